@@ -558,8 +558,8 @@ RUNS	?= 100000
 walkable: $(B)/unit/test_walkable
 	$(Q)EDM_RUNS=$(RUNS) $(if $(SEED),EDM_SEED=$(SEED)) $<
 
-# The shared-memory crossings between threads, under the thread sanitizer.
-run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
+# What threads share, under the thread sanitizer.
+run-crossings: $(filter $(B)/unit/test_shm% $(B)/unit/test_limits_threads,$(UNIT_X))
 	$(Q)for t in $^; do $$t >$$t.log 2>&1 || { cat $$t.log; exit 1; }; \
 		echo "  TSAN    $$t"; done
 

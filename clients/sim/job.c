@@ -194,6 +194,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	config_compiling(c, &with->tech, &of);
 	of.text.nc.notes = &notes;
 	of.text.nc.refused = o->check ? &refused : NULL;
+	of.build.begins_inside = o->from_line || o->from_mm > 0;
 	b = interp_build_create(&of.build);
 	if (!b)
 		return EX_OSERR;
@@ -201,7 +202,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	job->compile_lines_s = job->lines / (clock_s(CLOCK_MONOTONIC) - from_s);
 	if (err == -EINVAL && o->check)
 		say_all(&all, &text, &of);
-	if (err == 0 && (o->from_line || o->from_mm > 0))
+	if (err == 0 && of.build.begins_inside)
 		err = begin_inside(o, c, &of, b, &diag);
 	/* The text of a million lines is half as large as their program. */
 	free(t->at);

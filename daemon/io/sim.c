@@ -73,32 +73,28 @@ static void sim_write(void *self, const struct io_outputs *out)
 	sim_wash(s);
 }
 
-static bool is_short(const struct sim *s, double gap_mm)
-{
-	return gap_mm <= s->pulse.short_mm || sim_gap_mm(s) < s->bridge_mm;
-}
-
 /* What is left of the gap for the pulses. */
-static double left_mm(const struct sim *s)
+static double left_mm(const struct sim *s, double gap_mm)
 {
-	const double gap = sim_gap_mm(s) - s->p.debris_gap_mm * s->debris;
+	const double left = gap_mm - s->p.debris_gap_mm * s->debris;
 
 	if (s->broken)
 		return INFINITY;
 	if (s->out.sense)
 		return sim_probe(s) ? 0 : INFINITY;
-	return is_short(s, gap) ? 0 : gap;
+	return left <= s->pulse.short_mm || gap_mm < s->bridge_mm ? 0 : left;
 }
 
 static void sim_read(void *self, struct io_inputs *in)
 {
 	struct sim *s = self;
 	const bool sparks = s->powered_s > s->p.respond_s;
+	const double gap = sim_gap_mm(s);
 
-	sim_bridge(s);
+	sim_bridge(s, gap);
 	/* With the power off too: the sensing supply keeps the generator's
 	 * time. */
-	sim_pulses_train(s, left_mm(s));
+	sim_pulses_train(s, left_mm(s, gap));
 	if (sparks && !s->broken)
 		sim_erode(s);
 	sim_heat(s);

@@ -70,18 +70,17 @@ void sim_wash(struct sim *s)
 }
 
 /* A bridge is born of debris, and breaks when the gap outgrows it. */
-void sim_bridge(struct sim *s)
+void sim_bridge(struct sim *s, double gap_mm)
 {
-	const double gap = sim_gap_mm(s);
 	const double chance = s->p.bridge_per_s * s->debris * s->debris *
 			      s->period_s;
 
 	s->bridge_mm -= s->bridge_mm * s->period_s / s->p.bridge_settle_s;
-	if (gap > s->bridge_mm)
+	if (gap_mm > s->bridge_mm)
 		s->bridge_mm = 0;
 	if (s->powered_s > 0 && s->bridge_mm == 0 &&
 	    rng_uniform(&s->rng) < chance)
-		s->bridge_mm = gap - s->p.bridge_mm *
+		s->bridge_mm = gap_mm - s->p.bridge_mm *
 			       log(1 - rng_uniform(&s->rng));
 }
 

@@ -175,7 +175,7 @@ void sim_ground_follow(struct sim *s);
 double sim_gap_mm(const struct sim *s);	/* electrode to front */
 double sim_side_mm(const struct sim *s);
 void sim_wash(struct sim *s);
-void sim_bridge(struct sim *s);
+void sim_bridge(struct sim *s, double gap_mm);
 void sim_heat(struct sim *s);
 
 #endif /* IO_SIM_PROCESS_H */

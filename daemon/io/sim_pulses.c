@@ -136,10 +136,10 @@ struct odds {
 static struct odds odds(const struct sim *s, double gap_mm)
 {
 	const double x = (gap_mm - s->pulse.short_mm) / s->pulse.peaks_mm;
+	struct odds o = { .free = x > 0 ? -expm1(-PEAKS * x) : 0 };
 	const double limit = s->pulse.iso ? s->p.wait_us : s->pulse.on_us;
 	const double delay = delay_us(s, gap_mm);
 	const bool reaches = delay < INFINITY;
-	struct odds o = { .free = x > 0 ? -expm1(-PEAKS * x) : 0 };
 
 	if (!reaches || !(o.free > 0)) {
 		o.wait_us = reaches ? 0 : limit;
@@ -198,31 +198,33 @@ static double counted(struct sim *s, double part, double pulses)
 	return larger(0, part + sigma * rng_normal(&s->rng));
 }
 
-static double part(double x)
+static struct io_shares shares_of(double open, double spark, double arc,
+				  double shorted)
 {
-	return smaller(1, larger(0, x));
+	const double sum = open + spark + arc + shorted;
+
+	if (sum <= 0)
+		return (struct io_shares) { .spark = 1 };
+	return (struct io_shares) {
+		(float)(open / sum), (float)(spark / sum),
+		(float)(arc / sum), (float)(shorted / sum),
+	};
 }
 
+/* The sparks are what is left, and may be below 0 by rounding; the other parts
+ * cannot. */
 struct io_shares sim_pulses_shares(struct sim *s)
 {
 	const struct pulse_train *t = &s->train;
 	const double pulses = t->per_s * s->period_s;
-	double n[4] = {
-		part(t->late), part(1 - t->late - t->arc - t->shorted),
-		part(t->arc), part(t->shorted),
-	};
-	double sum = 0;
+	const double spark = larger(0, 1 - t->late - t->arc - t->shorted);
+	double n[4] = { t->late, spark, t->arc, t->shorted };
 
-	for (int i = 0; i < 4 && s->p.counted; i++)
-		n[i] = counted(s, n[i], pulses);
+	if (!s->p.counted)
+		return shares_of(t->late, spark, t->arc, t->shorted);
 	for (int i = 0; i < 4; i++)
-		sum += n[i];
-	if (sum <= 0)
-		return (struct io_shares) { .spark = 1 };
-	return (struct io_shares) {
-		(float)(n[0] / sum), (float)(n[1] / sum),
-		(float)(n[2] / sum), (float)(n[3] / sum),
-	};
+		n[i] = counted(s, n[i], pulses);
+	return shares_of(n[0], n[1], n[2], n[3]);
 }
 
 /*

@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* compiler.c - NC code to a program, in a thread of its own */
 #include "compiler.h"
+#include "both.h"
 #include "compiling.h"
 
 #include <errno.h>
-#include <pthread.h>
-#include <signal.h>
 #include <sodium.h>
 #include <stdatomic.h>
 #include <stdio.h>
@@ -125,6 +124,11 @@ static int block_write(struct compiler *c)
 	return err;
 }
 
+static bool wants_program(const struct compiler *c)
+{
+	return c->request.wants_wear || c->request.wants_block;
+}
+
 static int compiler_text(struct compiler *c, const struct config_tech *tech,
 			 const struct interp_dialect *dialect)
 {
@@ -149,6 +153,8 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	of.text.nc.electrodes = &c->request.electrodes;
 	memcpy(of.build.start_mm, c->request.start_mm,
 	       sizeof(of.build.start_mm));
+	of.build.begins_inside = c->request.goes_on;
+	of.build.threads = wants_program(c) ? 0 : 1;
 	c->build = interp_build_create(&of.build);
 	if (!c->build)
 		return -ENOMEM;
@@ -156,7 +162,7 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 			     &c->result.diag);
 	if (err == 0 && c->request.goes_on)
 		err = go_on(c);
-	if (err || (!c->request.wants_wear && !c->request.wants_block))
+	if (err || !wants_program(c))
 		return err;
 	return block_write(c);
 }
@@ -316,19 +322,6 @@ static int on_done(sd_event_source *source, int fd, uint32_t events, void *arg)
 	return 0;
 }
 
-/* Signals belong to the event loop, so the thread blocks all of them. */
-static int thread_start(struct compiler *c)
-{
-	sigset_t all, old;
-	int err;
-
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &old);
-	err = pthread_create(&c->thread, NULL, compiler_main, c);
-	pthread_sigmask(SIG_SETMASK, &old, NULL);
-	return -err;
-}
-
 int compiler_start(struct compiler **ret, sd_event *event,
 		   const struct compiler_request *request,
 		   compiler_done_fn done, void *arg)
@@ -346,7 +339,7 @@ int compiler_start(struct compiler **ret, sd_event *event,
 	err = c->fd < 0 ? -errno :
 	      sd_event_add_io(event, &c->source, c->fd, EPOLLIN, on_done, c);
 	if (err >= 0)
-		err = thread_start(c);
+		err = -both_start(&c->thread, compiler_main, c);
 	if (err < 0) {
 		compiler_free(c);
 		return err;

@@ -125,7 +125,9 @@ static void write_text(FILE *f, int kind)
 /* As edmd-jobs makes a program of a text. */
 static struct interp_program compile(const char *text, size_t size)
 {
-	struct interp_build_options bo = { .machine = &machine.axes };
+	struct interp_build_options bo = {
+		.machine = &machine.axes, .threads = 1,
+	};
 	const struct interp_nc_options no = { .machine = &machine.axes };
 	struct interp_build *b = interp_build_create(&bo);
 	struct interp_nc_result done;

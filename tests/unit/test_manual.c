@@ -159,6 +159,40 @@ static void a_limit_switch_stops_at_once_and_lets_away_alone(void **state)
 	run_out(&b, STATE_IDLE);
 }
 
+/* It comes on again while the axis leaves it. */
+static void a_limit_switch_that_bounces_is_where_it_was(void **state)
+{
+	const struct cycle_config k = manual_config();
+	struct bench b;
+
+	(void)state;
+	bench_init(&b, &k);
+	b.limit_max = 5000;
+	jog(&b, INTERP_X, 20);
+	run_out(&b, STATE_FAULT);
+	ask(&b, CYCLE_RESET, 0, 0);
+	assert_int_equal(jog(&b, INTERP_X, -1), ANSWER_DONE);
+	for (int i = 0; i < 10000 && (b.c.limit.on ||
+				      b.c.state != STATE_JOG); i++)
+		period(&b);
+	assert_int_equal(b.c.limit.on, 0);
+	b.limit_max = 4900;
+	run_out(&b, STATE_FAULT);
+	assert_int_equal(b.c.fault.first, FAULT_LIMIT_SWITCH);
+	ask(&b, CYCLE_RESET, 0, 0);
+	assert_int_equal(jog(&b, INTERP_X, 1), ANSWER_AT_LIMIT);
+	assert_int_equal(jog(&b, INTERP_X, -10), ANSWER_DONE);
+	run_out(&b, STATE_IDLE);
+	/* Farther away it is the other one. */
+	b.limit_min = -6000;
+	b.limit_max = 300000;
+	assert_int_equal(jog(&b, INTERP_X, -20), ANSWER_DONE);
+	run_out(&b, STATE_FAULT);
+	ask(&b, CYCLE_RESET, 0, 0);
+	assert_int_equal(jog(&b, INTERP_X, -1), ANSWER_AT_LIMIT);
+	assert_int_equal(jog(&b, INTERP_X, 1), ANSWER_DONE);
+}
+
 static void a_limit_switch_stops_a_job_and_its_start(void **state)
 {
 	const struct cycle_config k = manual_config();
@@ -298,6 +332,7 @@ int main(void)
 		cmocka_unit_test(a_touch_ends_a_jog_but_lets_it_come_away),
 		cmocka_unit_test(an_e_stop_ends_it_at_once),
 		cmocka_unit_test(a_limit_switch_stops_at_once_and_lets_away_alone),
+		cmocka_unit_test(a_limit_switch_that_bounces_is_where_it_was),
 		cmocka_unit_test(a_limit_switch_stops_a_job_and_its_start),
 		cmocka_unit_test(held_on_a_switch_only_the_way_away_is_gone),
 		cmocka_unit_test(steps_lead_from_node_to_node),

@@ -5,9 +5,23 @@
 #include "axes/limit.h"
 #include "cycle.h"
 
+#include <math.h>
+
+#define BOUNCE_MM	1.0		/* degrees of A B C */
+
 bool limit_bars(const struct limit *l, uint32_t axis, int toward)
 {
 	return l->on >> axis & 1 && l->side[axis] == toward;
+}
+
+/* Does it come on again where it was on before? */
+static bool bounces(const struct cycle *c, int axis, int32_t at)
+{
+	const struct limit *l = &c->limit;
+	const double off = ((double)at - l->at[axis]) *
+			   c->config.axis[axis].pulse_mm;
+
+	return l->met >> axis & 1 && fabs(off) < BOUNCE_MM;
 }
 
 void limit_guard(struct cycle *c, const struct io_inputs *in)
@@ -18,12 +32,17 @@ void limit_guard(struct cycle *c, const struct io_inputs *in)
 	 * The direction of the last pulses tells on which side of the axis the
 	 * switch lies. Before the first period this edmd has made no pulses.
 	 */
-	for (uint32_t m = came; m; m &= m - 1) {
+	for (uint32_t m = in->limit; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
+		const int32_t at = comp_pulses(&c->comp.axis[i]);
 
-		c->limit.side[i] = c->comp.begun ? c->comp.axis[i].toward : 0;
+		if (came >> i & 1 && !bounces(c, i, at))
+			c->limit.side[i] = c->comp.begun ?
+					   c->comp.axis[i].toward : 0;
+		c->limit.at[i] = at;
 	}
 	c->limit.on = in->limit;
+	c->limit.met |= in->limit;
 	if ((came && cycle_moves(c)) ||
 	    (in->limit && state_duty[c->state].running))
 		fault_latch(&c->fault, FAULT_LIMIT_SWITCH);

@@ -6,7 +6,8 @@
  * latches the fault `limit-switch`.  An axis that stands on its switch may only
  * move away from it, back where it came from.  If a switch was on from the
  * start, nobody knows which direction that is; then a jog may go both ways,
- * slowly.
+ * slowly.  A switch bounces: one that comes on again beside where it went off
+ * lies where it lay.
  *
  * Threads: RT-safe.
  */
@@ -22,6 +23,8 @@ struct limit {
 	uint32_t on;			/* bit per axis */
 	int8_t side[INTERP_NAXES];	/* direction from the axis to its
 					 * switch, +1 or -1; 0: not known */
+	uint32_t met;			/* bit per axis; it was on: */
+	int32_t at[INTERP_NAXES];	/* here last, pulses of the drive */
 };
 
 struct cycle;

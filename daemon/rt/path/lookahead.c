@@ -245,14 +245,21 @@ static void look_back(struct lookahead *k)
 	guess_stop(k, left);
 }
 
+/* Is there more of this segment that way? */
+static bool goes_on(const struct interp_cursor *at, int toward)
+{
+	return at->seg.kind < INTERP_BEGIN &&
+	       (toward > 0 ? at->seg.length_mm - at->s_mm : at->s_mm) >
+	       MOVER_ONTO_MM;
+}
+
 uint32_t lookahead_index(const struct cycle *c, int toward)
 {
 	const struct interp_cursor *at = &c->cursor;
-	const struct interp_seg *s = &at->seg;
+	const struct interp_seg *s;
 	uint32_t i = at->index;
 
-	if (s->kind < INTERP_BEGIN &&
-	    (toward > 0 ? s->length_mm - at->s_mm : at->s_mm) > MOVER_ONTO_MM)
+	if (goes_on(at, toward))
 		return i;
 	for (int n = 0; n < HOPS_MAX; n++) {
 		if (toward < 0 && i == 0)
@@ -271,10 +278,12 @@ uint32_t lookahead_index(const struct cycle *c, int toward)
 const struct interp_seg *lookahead_toward(const struct cycle *c, int toward)
 {
 	const struct interp_cursor *at = &c->cursor;
-	const uint32_t i = lookahead_index(c, toward);
+	uint32_t i;
 
-	return i == LOOKAHEAD_NONE ? NULL : i == at->index ? &at->seg :
-							     &at->p.segs[i];
+	if (goes_on(at, toward))
+		return &at->seg;
+	i = lookahead_index(c, toward);
+	return i == LOOKAHEAD_NONE ? NULL : &at->p.segs[i];
 }
 
 /* The next node; the one after it, standing on one. */

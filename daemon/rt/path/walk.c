@@ -79,11 +79,12 @@ static bool was_positioned(const struct cycle *c)
 	return s->kind < INTERP_BEGIN && s->flags & INTERP_SEG_UNCUT;
 }
 
+/* What is sensed is not cut either. */
 bool walk_positions(const struct cycle *c)
 {
-	const enum walk_ahead on = walk_ahead(c);
+	const struct interp_seg *s = seg_ahead(&c->cursor);
 
-	return on == AHEAD_ACTION ? was_positioned(c) : on != AHEAD_CUT;
+	return s->kind >= INTERP_BEGIN ? was_positioned(c) : !walk_is_cut(c, s);
 }
 
 double walk_cut_mm(const struct cycle *c, double least_mm)

@@ -8,6 +8,7 @@
 #include "path/builder.h"
 #include "path/build_arc.h"
 #include "path/build_bits.h"
+#include "path/build_limits.h"
 #include "path/build_pair.h"
 #include "path/build_rule.h"
 #include "pulse/pulse.h"
@@ -52,7 +53,9 @@ static int64_t *nodes_of(const struct interp_build *b)
 
 static struct interp_seg *seg_add(struct interp_build *b)
 {
-	return build_table_add(&b->segs);
+	if (b->segs.n == b->segs.room && build_segs_room(b) < 0)
+		return NULL;
+	return (struct interp_seg *)b->segs.at + b->segs.n++;
 }
 
 /* Append the place where the path stands as a node. */
@@ -63,7 +66,7 @@ static int node_add(struct interp_build *b)
 	const size_t n = t->n;
 	int64_t *at;
 
-	if (t->room - n < naxes && build_table_room(t, naxes) < 0)
+	if (t->room - n < naxes && build_seen_room(b, t, naxes) < 0)
 		return -ENOMEM;
 	/* There may be no axis yet, and then no table either. */
 	at = nodes_of(b);
@@ -80,6 +83,7 @@ static int column_add(struct interp_build *b, uint32_t axis)
 	const uint32_t from = b->naxes, to = b->naxes + 1;
 	int64_t *at;
 
+	build_limits_stop(b);
 	if (build_table_room(&b->nodes, rows * to - b->nodes.n) < 0)
 		return -ENOMEM;
 	at = nodes_of(b);
@@ -149,6 +153,7 @@ void interp_build_destroy(struct interp_build *b)
 {
 	if (!b)
 		return;
+	build_limits_stop(b);
 	free(b->segs.at);
 	free(b->nodes.at);
 	free(b->arcs.at);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* build_block.c - writes a finished program as one flat block */
-#include "interp/limits.h"
-#include "path/builder.h"
+#include "path/build_limits.h"
 
-#include <math.h>
+#include "both.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,12 +62,49 @@ size_t interp_build_bytes(const struct interp_build *b)
 	return layout(b).bytes;
 }
 
+/* -- Tables ---------------------------------------------------------------- */
+
+struct copy {
+	char *to;
+	const char *from;
+	size_t bytes;
+};
+
+static void copy_first(void *arg)
+{
+	const struct copy *c = arg;
+
+	memcpy(c->to, c->from, c->bytes / 2);
+}
+
+static void copy_second(void *arg)
+{
+	const struct copy *c = arg;
+	const size_t at = c->bytes / 2;
+
+	memcpy(c->to + at, c->from + at, c->bytes - at);
+}
+
+/* Shorter ones are copied before a thread is there. */
+#define LONG_COPY	(1u << 20)
+
+/* New pages take most of the time of a long copy. */
+static void copy(void *to, const void *from, size_t bytes, uint32_t threads)
+{
+	struct copy c = { to, from, bytes };
+
+	if (threads > 1 && bytes >= LONG_COPY)
+		both(copy_first, copy_second, &c);
+	else
+		memcpy(to, from, bytes);
+}
+
 /* The table's memory is freed at once, so a large program is in memory only
  * once. */
-static void move_table(char *to, struct table *t)
+static void move_table(char *to, struct table *t, uint32_t threads)
 {
 	if (t->n > 0)
-		memcpy(to, t->at, t->n * t->size);
+		copy(to, t->at, t->n * t->size, threads);
 	free(t->at);
 	t->at = NULL;
 	t->n = t->room = 0;
@@ -89,31 +126,12 @@ static void write_head(const struct interp_build *b,
 		 about->name ? about->name : "");
 }
 
-static void write_limits(const struct interp_build *b, void *block,
-			 size_t bytes, struct interp_seg *segs)
-{
-	const struct interp_limits l = {
-		.machine = b->o.machine,
-		.corner_mm = b->o.corner_mm > 0 ? b->o.corner_mm :
-						  INTERP_CORNER_MM,
-		.tolerance_mm = b->o.tolerance_mm > 0 ? b->o.tolerance_mm :
-							INTERP_TOLERANCE_MM,
-		.rotary_radius_mm = b->o.rotary_radius_mm > 0 ?
-				    b->o.rotary_radius_mm : INTERP_ROTARY_MM,
-		.points_per_s = b->o.points_per_s > 0 ? b->o.points_per_s :
-							INFINITY,
-	};
-	struct interp_program p;
-
-	if (interp_program_map(&p, block, bytes) == 0)
-		interp_limits_write(&l, &p, segs);
-}
-
 /* Node 0 comes with the first column.  The END has a node of its own. */
 static void write_nodes(struct interp_build *b, size_t rows,
-			const struct interp_program_head *h, int64_t *nodes)
+			const struct interp_program_head *h, int64_t *nodes,
+			uint32_t threads)
 {
-	move_table((char *)nodes, &b->nodes);
+	move_table((char *)nodes, &b->nodes, threads);
 	for (size_t i = rows; i <= h->nsegs; i++) {
 		for (uint32_t j = 0; j < b->naxes; j++)
 			nodes[i * b->naxes + j] = b->here[b->column[j]];
@@ -128,26 +146,30 @@ void interp_build_write(struct interp_build *b,
 	struct interp_seg *segs = (void *)(base + h.segs_at);
 	const size_t n = b->segs.n;
 	const bool ended = ends(b);
+	const uint32_t threads = build_threads(b);
+	struct interp_program p;
 
 	write_head(b, &h, about);
 	memcpy(base, &h, sizeof(h));
-	move_table((char *)segs, &b->segs);
-	write_nodes(b, n + 1, &h, (void *)(base + h.nodes_at));
+	build_limits_await(b);
+	move_table((char *)segs, &b->segs, threads);
+	write_nodes(b, n + 1, &h, (void *)(base + h.nodes_at), threads);
 	if (!ended) {
 		segs[n] = (struct interp_seg) {
 			.kind = INTERP_END, .s_mm = b->length_mm,
 			.line = segs[n - 1].line, .cond = b->cond,
 		};
 	}
-	move_table(base + h.arcs_at, &b->arcs);
-	move_table(base + h.conds_at, &b->conds);
-	move_table(base + h.escapes_at, &b->escapes);
-	move_table(base + h.couples_at, &b->couples);
-	move_table(base + h.bits_at, &b->bits);
-	move_table(base + h.curves_at, &b->curves);
-	move_table(base + h.pieces_at, &b->pieces);
-	move_table(base + h.stops_at, &b->stops);
-	move_table(base + h.numbers_at, &b->numbers);
-	move_table(base + h.runs_at, &b->runs);
-	write_limits(b, block, h.bytes, segs);
+	move_table(base + h.arcs_at, &b->arcs, threads);
+	move_table(base + h.conds_at, &b->conds, threads);
+	move_table(base + h.escapes_at, &b->escapes, threads);
+	move_table(base + h.couples_at, &b->couples, threads);
+	move_table(base + h.bits_at, &b->bits, threads);
+	move_table(base + h.curves_at, &b->curves, threads);
+	move_table(base + h.pieces_at, &b->pieces, threads);
+	move_table(base + h.stops_at, &b->stops, threads);
+	move_table(base + h.numbers_at, &b->numbers, threads);
+	move_table(base + h.runs_at, &b->runs, threads);
+	if (interp_program_map(&p, block, h.bytes) == 0)
+		build_limits_write(b, &p, segs, threads);
 }

@@ -8,7 +8,7 @@
  */
 #include "interp/build_from.h"
 #include "interp/mcode_arg.h"
-#include "path/builder.h"
+#include "path/build_limits.h"
 
 #include <errno.h>
 #include <math.h>
@@ -396,6 +396,7 @@ static int join(struct from *f)
 	f->entry->way_mm = way->length_mm;
 	swap(&b->segs, &way->segs);
 	swap(&b->nodes, &way->nodes);
+	b->segs_room = b->segs.room;
 	memcpy(b->first, way->first, sizeof(b->first));
 	number_anew(f, nway);
 	return 0;
@@ -451,6 +452,7 @@ int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
 	diag->column = 1;
 	if (err < 0)
 		return err;
+	build_limits_stop(b);
 	err = find_place(&f);
 	if (err < 0)
 		return err;

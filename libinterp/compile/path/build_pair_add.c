@@ -5,7 +5,7 @@
  */
 #include "path/build_pair.h"
 #include "path/build_edge.h"
-#include "path/builder.h"
+#include "path/build_limits.h"
 #include "pulse/strategy.h"
 
 #include <errno.h>
@@ -19,7 +19,7 @@
 static int couple_add(struct interp_build *b, const struct build_pair *p)
 {
 	const size_t words = p->bits ? ((size_t)p->ticks + 63) / 64 : 0;
-	struct interp_couple *c = build_table_add(&b->couples);
+	struct interp_couple *c = build_seen_add(b, &b->couples);
 
 	if (!c)
 		return -ENOMEM;

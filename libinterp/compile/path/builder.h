@@ -9,6 +9,7 @@
 
 #include "interp/build.h"
 #include "path/build_rule.h"
+#include "speed/follow.h"
 
 struct table {
 	void *at;
@@ -66,6 +67,11 @@ struct interp_build {
 					 * last */
 	int64_t timed_at[INTERP_NAXES];	/* place of it, subpulses */
 	const struct interp_tech *tech;	/* from this cond was made */
+	size_t segs_room;		/* of which segs.room is a part */
+	struct follow *follow;		/* finds limits meanwhile; NULL: nobody
+					 * does */
+	struct interp_program seen;	/* by it */
+	struct interp_program_head seen_head;
 };
 
 /** build_table_room() - make room for @n more.  Return: 0 or -ENOMEM. */

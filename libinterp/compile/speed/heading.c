@@ -203,21 +203,28 @@ static uint32_t line_along(const struct ways *w, uint32_t i)
 	return along_by(w, moving, &h, HEADING_COUNTS);
 }
 
-uint32_t heading_run_end(const struct ways *w, uint32_t i)
+/* Every line's length is in X Y Z. */
+static bool is_usual(const struct ways *w)
 {
-	const uint32_t end = w->p->head->nsegs - 1;
-	uint32_t along, m = i + 1;
+	return w->xyz == (1u << w->p->head->naxes) - 1;
+}
 
-	/* Every line's length is in X Y Z. */
-	if (w->xyz == (1u << w->p->head->naxes) - 1)
-		return m < end ? end : m;
-	along = line_along(w, i);
-	for (; m < end; m++) {
-		const uint32_t next = line_along(w, m);
+struct heading_run heading_run(const struct ways *w, uint32_t i)
+{
+	return (struct heading_run) { i + 1, is_usual(w) ? 0 :
+							   line_along(w, i) };
+}
 
-		if (along && next && next != along)
-			break;
-		along = next ? next : along;
+bool heading_run_on(const struct ways *w, struct heading_run *run, uint32_t to)
+{
+	if (is_usual(w))
+		run->at = run->at < to ? to : run->at;
+	for (; run->at < to; run->at++) {
+		const uint32_t next = line_along(w, run->at);
+
+		if (run->along && next && next != run->along)
+			return true;
+		run->along = next ? next : run->along;
 	}
-	return m;
+	return false;
 }

@@ -99,10 +99,22 @@ COLUMNS_INLINE void heading_find(const struct ways *w, uint32_t i,
 		ret->last.rate[j] = ret->first.rate[j];
 }
 
+/* Where the length passes to other columns. */
+struct heading_run {
+	uint32_t at;			/* segments before it are in the run */
+	uint32_t along;			/* the columns of its lines; 0: there
+					 * was none yet */
+};
+
+/** heading_run() - a run begins with segment @i. */
+struct heading_run heading_run(const struct ways *w, uint32_t i);
+
 /**
- * heading_run_end() - the first segment from @i on whose length is in other
- * columns than that of @i; only lines are asked.
+ * heading_run_on() - look on, but for segments before @to only.
+ *
+ * Return: true: the length of segment run->at is in other columns than that of
+ * the run; only lines are asked.
  */
-uint32_t heading_run_end(const struct ways *w, uint32_t i);
+bool heading_run_on(const struct ways *w, struct heading_run *run, uint32_t to);
 
 #endif /* SPEED_HEADING_H */

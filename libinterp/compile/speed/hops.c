@@ -2,6 +2,8 @@
 /* hops.c - which segment comes next that is slower, or softer */
 #include "speed/pass.h"
 
+#include "both.h"
+
 #include <string.h>
 
 #define HOP_MAX		UINT16_MAX
@@ -154,8 +156,11 @@ static inline uint16_t softer_behind(const struct interp_seg *s, uint32_t i)
 	return m == i ? 0 : hop_of(m);
 }
 
-static void chain_ahead(struct interp_seg *s, uint32_t end)
+static void chain_ahead(void *arg)
 {
+	const struct pass *w = arg;
+	struct interp_seg *s = w->segs;
+	const uint32_t end = w->end;
 	struct pace next = pace_of(s + end);
 
 	s[end].slower_ahead = s[end].slower_feed = s[end].softer_ahead = 0;
@@ -170,8 +175,11 @@ static void chain_ahead(struct interp_seg *s, uint32_t end)
 	}
 }
 
-static void chain_behind(struct interp_seg *s, uint32_t end)
+static void chain_behind(void *arg)
 {
+	const struct pass *w = arg;
+	struct interp_seg *s = w->segs;
+	const uint32_t end = w->end;
 	float before = back_into(s);
 
 	s[0].slower_behind = s[0].softer_behind = 0;
@@ -184,8 +192,12 @@ static void chain_behind(struct interp_seg *s, uint32_t end)
 	}
 }
 
-void pass_hops(struct interp_seg *segs, uint32_t end)
+void pass_hops(struct pass *w)
 {
-	chain_ahead(segs, end);
-	chain_behind(segs, end);
+	if (w->threads > 1) {
+		both(chain_ahead, chain_behind, w);
+		return;
+	}
+	chain_ahead(w);
+	chain_behind(w);
 }

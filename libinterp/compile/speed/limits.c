@@ -47,14 +47,26 @@ static void windows(struct pass *w)
 	w->short_mm = PASS_LONG * mm;
 }
 
-static void begin(struct pass *w, const struct interp_limits *l,
-		  const struct interp_program *p, struct interp_seg *segs)
+/* Of a turn below 1 the radius of a corner is at least 6.46 * corner_mm /
+ * turn. */
+static void note_turn(struct pass *w, uint32_t j)
+{
+	const double far = 6.4 * w->corner_mm, step = w->step_mm_s[j];
+
+	w->turn_least[0] = smaller(w->turn_least[0],
+				   smaller(w->a_mm_s2[j] * far, step * step));
+	w->turn_least[1] = smaller(w->turn_least[1],
+				   w->j_mm_s3[j] * far * far);
+}
+
+void pass_begin(struct pass *w, const struct interp_limits *l,
+		const struct interp_program *p, struct interp_seg *segs)
 {
 	*w = (struct pass) { .p = p, .segs = segs, .corner_mm = l->corner_mm,
 			     .points_per_s = l->points_per_s,
-			     .n = p->head->naxes, .end = p->head->nsegs - 1,
-			     .a_least_mm_s2 = INFINITY,
-			     .j_least_mm_s3 = INFINITY,
+			     .threads = l->threads,
+			     .n = p->head->naxes, .at = 1,
+			     .turn_least = { INFINITY, INFINITY },
 			     .a_linear_mm_s2 = INFINITY,
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
@@ -74,8 +86,9 @@ static void begin(struct pass *w, const struct interp_limits *l,
 		add_level(&w->v_levels, m->v_max_mm_s);
 		add_level(&w->a_levels, m->a_max_mm_s2);
 		add_level(&w->j_levels, m->j_max_mm_s3);
-		w->a_least_mm_s2 = smaller(w->a_least_mm_s2, m->a_max_mm_s2);
-		w->j_least_mm_s3 = smaller(w->j_least_mm_s3, m->j_max_mm_s3);
+		w->curl_mm_s2[j] = cbrt(24 * l->corner_mm * m->j_max_mm_s3 *
+					m->j_max_mm_s3);
+		note_turn(w, j);
 		if (w->ways.xyz >> j & 1)
 			w->a_linear_mm_s2 = smaller(w->a_linear_mm_s2,
 						    m->a_max_mm_s2);
@@ -105,6 +118,11 @@ static float level(const struct pass *w, double v_mm_s)
 			return (float)(own * (1 - 2 * SAME));
 	}
 	return down(v_mm_s);
+}
+
+float pass_level(const struct pass *w, double v_mm_s)
+{
+	return level(w, v_mm_s);
 }
 
 /* What an axis can do stays as it is. */
@@ -293,8 +311,11 @@ COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
 			       const struct heading *a, const struct heading *b,
 			       uint32_t n)
 {
-	const double v = near_node_mm_s(w, last, i, a, b, n);
+	double v = near_node_mm_s(w, last, i, a, b, n);
 
+	if (!(w->segs[last].kind == INTERP_LINE &&
+	      w->segs[i].kind == INTERP_LINE))
+		v = smaller(v, pass_curl(w, last, i, a, b));
 	limit_nodes(w, last, i, v);
 	if (a->along != b->along)
 		note_parts(w, last, i);
@@ -310,143 +331,45 @@ COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
 	}
 }
 
-/* -- Beside a corner ------------------------------------------------------- */
-
-/* A node is a corner if those a chord away from it are so much faster. */
-#define CORNER		2
-
-/* Of the narrowest window: nodes so near to a corner may see it in there. */
-#define SEES		2
-
-static double from_to(const struct pass *w, uint32_t a, uint32_t b)
-{
-	return fabs(w->segs[b].s_mm - w->segs[a].s_mm);
-}
-
-/* The next node at least @mm from node @i, forward if @way is 1, back if -1. */
-static uint32_t away(const struct pass *w, uint32_t i, int way, double mm)
-{
-	uint32_t k = i;
-
-	while (k > w->run && k < w->run_end && from_to(w, i, k) < mm)
-		k += (uint32_t)way;
-	return k;
-}
-
-static bool is_corner(const struct pass *w, uint32_t i)
-{
-	const float v = CORNER * w->segs[i - 1].node_mm_s;
-
-	for (int way = -1; way <= 1; way += 2) {
-		const uint32_t k = away(w, i, way, w->near.mm);
-
-		if (k == w->run || k >= w->run_end ||
-		    !(w->segs[k - 1].node_mm_s >= v))
-			return false;
-	}
-	return true;
-}
-
-/* Between short lines, where no corner goes over tiny ones. */
-static bool is_among(const struct pass *w, uint32_t i)
-{
-	const struct interp_seg *s = &w->segs[i];
-
-	return s[-1].kind == INTERP_LINE && s->kind == INTERP_LINE &&
-	       pass_is_short(w, i - 1) && pass_is_short(w, i) &&
-	       pass_is_tiny(w, i - 1) == pass_is_tiny(w, i);
-}
-
-/* If it is faster now. */
-static void raise_node(struct pass *w, uint32_t i)
-{
-	struct interp_seg *s = &w->segs[i];
-	struct headings h[2];
-	float most;
-	double v;
-
-	for (uint32_t k = 0; k < 2; k++) {
-		heading_of(&w->ways, i - 1 + k, &h[k]);
-		w->a_own_mm_s2[k] = (double)w->segs[i - 1 + k].a_mm_s2;
-	}
-	v = pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first);
-	most = isinf(v) ? INFINITY : level(w, v);
-	if (most <= s[-1].node_mm_s)
-		return;
-	s[-1].node_mm_s = most;
-	if (w->bends)
-		pass_note_bends(w, i - 1, i);
-}
-
-static void look_between(struct pass *w, uint32_t run, uint32_t i,
-			 uint32_t run_end)
-{
-	w->run = run;
-	w->run_end = run_end;
-	w->near.behind = run;
-	w->near.ahead = i;
-	for (int k = 0; k < PASS_WINDOWS; k++) {
-		w->windows[k].behind = w->windows[k].before = run;
-		w->windows[k].ahead = w->windows[k].beyond = i;
-	}
-}
-
-/*
- * The windows of nodes beside a corner show the corner, too.  But only the
- * corner itself has to be passed slowly: a move that meets a slow place in
- * front of a slower one brakes in steps.  So windows end in the corner, and are
- * as long on the other side of the node.  What bends more slowly than that does
- * not count so near to a corner: no move is fast enough there.
- */
-static void look_beside(struct pass *w)
-{
-	const uint32_t at = w->slow;
-	struct pass again;
-
-	w->slow = 0;
-	if (at == 0 || !is_corner(w, at))
-		return;
-	again = *w;
-	for (int way = -1; way <= 1; way += 2) {
-		const double mm = SEES * w->windows[0].mm;
-		uint32_t i = at + (uint32_t)way;
-
-		while (i > w->run && i < w->run_end &&
-		       from_to(w, at, i) < mm && is_among(w, i)) {
-			const uint32_t far = away(w, i, way,
-						  from_to(w, at, i));
-
-			look_between(&again, way > 0 ? at : far, i,
-				     way > 0 ? far : at);
-			raise_node(&again, i);
-			i += (uint32_t)way;
-		}
-	}
-	w->bent_nodes = again.bent_nodes;
-}
+/* -- From segment to segment ----------------------------------------------- */
 
 /* The node in front of segment @i is known. */
 static inline void note_slow(struct pass *w, uint32_t i)
 {
 	const struct interp_seg *s = &w->segs[i];
 
-	if (w->slow > 0 &&
-	    from_to(w, w->slow, i) >= SEES * w->windows[0].mm)
-		look_beside(w);
+	if (w->slow > 0 && pass_from_to(w, w->slow, i) >= pass_sees_mm(w))
+		pass_beside_corner(w);
 	if (s[-1].node_mm_s < s->feed_max_mm_s &&
 	    (w->slow == 0 || s[-1].node_mm_s < w->segs[w->slow - 1].node_mm_s))
 		w->slow = i;
 }
 
-/* An action stands on the node before it. */
-COLUMNS_INLINE void walk_nodes(struct pass *w, uint32_t n)
+/* The run that began last ends there; UINT32_MAX: behind what is known. */
+static void look_for_run_end(struct pass *w, uint32_t known)
 {
-	struct headings h[2], *was = &h[0], *is = &h[1], *swap;
-	uint32_t last = 0;		/* that moves; 0: none yet */
+	if (heading_run_on(&w->ways, &w->ahead, known))
+		w->run_end = w->ahead.at;
+	else
+		w->run_end = known == w->end ? known : UINT32_MAX;
+}
 
-	w->segs[0].node_mm_s = INFINITY;
-	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
-	for (uint32_t i = 1; i <= w->end; i++) {
+static void next_run(struct pass *w, uint32_t i, uint32_t known)
+{
+	pass_beside_corner(w);
+	w->run = i;
+	w->ahead = heading_run(&w->ways, i);
+	look_for_run_end(w, known);
+}
+
+/* An action stands on the node before it. */
+COLUMNS_INLINE void walk_nodes(struct pass *w, uint32_t known, uint32_t to,
+			       uint32_t n)
+{
+	struct headings *was = &w->headings[0], *is = &w->headings[1], *swap;
+	uint32_t last = w->last;
+
+	for (uint32_t i = w->at; i < to; i++) {
 		struct interp_seg *s = &w->segs[i];
 
 		s->node_mm_s = INFINITY;
@@ -454,11 +377,8 @@ COLUMNS_INLINE void walk_nodes(struct pass *w, uint32_t n)
 		s->flags &= (uint8_t)~INTERP_SEG_STAND;
 		if (s->kind >= INTERP_BEGIN)
 			continue;
-		if (i >= w->run_end) {
-			look_beside(w);
-			w->run = i;
-			w->run_end = heading_run_end(&w->ways, i);
-		}
+		if (i >= w->run_end)
+			next_run(w, i, known);
 		heading_find(&w->ways, i, is, n);
 		limit_seg(w, i, is, n);
 		w->a_own_mm_s2[0] = w->a_own_mm_s2[1];
@@ -472,7 +392,62 @@ COLUMNS_INLINE void walk_nodes(struct pass *w, uint32_t n)
 		was = is;
 		is = swap;
 	}
-	look_beside(w);
+	if (was != &w->headings[0])
+		w->headings[0] = *was;
+	w->last = last;
+	w->at = to;
+}
+
+void pass_walk(struct pass *w, uint32_t known, uint32_t to)
+{
+	if (w->run_end == UINT32_MAX)
+		look_for_run_end(w, known);
+	BY_COLUMNS(w->n, walk_nodes, w, known, to);
+}
+
+/* The last node before node @i that is at least @mm from it; 0 if none is. */
+static uint32_t far_before(const struct pass *w, uint32_t i, double mm)
+{
+	const double s_mm = w->segs[i].s_mm;
+	uint32_t near = i, far = 0;
+
+	while (far + 1 < near) {
+		const uint32_t k = far + (near - far) / 2;
+
+		if (s_mm - w->segs[k].s_mm >= mm)
+			far = k;
+		else
+			near = k;
+	}
+	return far;
+}
+
+/* The widest window is looked at twice, one behind the other (beside.c). */
+uint32_t pass_seen(const struct pass *w, uint32_t known)
+{
+	const double mm = larger(w->windows[PASS_WINDOWS - 1].mm, w->near.mm);
+
+	return known < 2 ? 0 :
+	       far_before(w, far_before(w, known - 1, mm), mm);
+}
+
+void pass_move(struct pass *w, const struct interp_program *p,
+	       struct interp_seg *segs)
+{
+	w->p = w->ways.p = p;
+	w->segs = segs;
+}
+
+void pass_finish(struct pass *w)
+{
+	w->end = w->p->head->nsegs - 1;
+	w->segs[0].node_mm_s = INFINITY;
+	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
+	pass_walk(w, w->end, w->end + 1);
+	pass_beside_corner(w);
+	pass_soften(w);
+	pass_stretches(w);
+	pass_hops(w);
 }
 
 void interp_limits_write(const struct interp_limits *l,
@@ -481,9 +456,6 @@ void interp_limits_write(const struct interp_limits *l,
 {
 	struct pass w;
 
-	begin(&w, l, p, segs);
-	BY_COLUMNS(w.n, walk_nodes, &w);
-	pass_soften(&w);
-	pass_stretches(&w);
-	pass_hops(segs, w.end);
+	pass_begin(&w, l, p, segs);
+	pass_finish(&w);
 }

@@ -169,9 +169,8 @@ COLUMNS_INLINE double near_curve(struct pass *w, uint32_t i, double most,
 
 /*
  * Does pass_turn() certainly allow @v_mm_s?  On most curves of lines it does,
- * and the answer costs less than pass_turn() itself.  Of a turn below 1 the
- * radius of a corner is at least 6.46 * corner_mm / turn; all of a change
- * counts here, and of all axes the one that can do least.
+ * and the answer costs less than pass_turn() itself.  All of a change counts
+ * here, and of all axes the one that can do least.
  */
 COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
 				      uint32_t i, const struct heading *a,
@@ -179,7 +178,7 @@ COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
 				      uint32_t both, uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
-	const double v = v_mm_s, far = 6.4 * w->corner_mm;
+	const double v = v_mm_s;
 	double turn = 0;
 
 	if (s[last].kind != INTERP_LINE || s[i].kind != INTERP_LINE ||
@@ -194,8 +193,8 @@ COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
 		else if (!(fabs(d) * v < 0.99 * w->step_mm_s[j]))
 			return false;
 	}
-	return turn < 1 && v * v * turn < w->a_least_mm_s2 * far &&
-	       v * v * v * turn * turn < w->j_least_mm_s3 * far * far;
+	return turn < 1 && v * v * turn < w->turn_least[0] &&
+	       v * v * v * turn * turn < w->turn_least[1];
 }
 
 /* As pass_node_mm_s(). */
@@ -209,7 +208,7 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 	const bool curves = pass_is_short(w, last) || pass_is_short(w, i);
 	const uint32_t both = a->along & b->along;
 	const bool all = both == near_all(n);
-	double v = INFINITY, turn;
+	double v = INFINITY, fast, turn;
 
 	w->bends = 0;
 	if (!all)
@@ -220,8 +219,12 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		v = all ? near_curve(w, i, most, n) : 0;
 	if (curves && v < most)
 		v = pass_curve(w, i, both, most);
-	if (all ? near_turns_faster(w, last, i, a, b, v, near_all(n), n) :
-		  near_turns_faster(w, last, i, a, b, v, both, n))
+	if (!curves && last + 1 == i && s[last].kind == INTERP_LINE &&
+	    s[i].kind == INTERP_LINE)
+		v = pass_arch(w, i, both, most);
+	fast = curves ? smaller(v, most) : v;
+	if (all ? near_turns_faster(w, last, i, a, b, fast, near_all(n), n) :
+		  near_turns_faster(w, last, i, a, b, fast, both, n))
 		return v;
 	turn = pass_turn(w, last, i, a, b);
 	w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s, (float)turn);

@@ -126,10 +126,17 @@ struct pass {
 	double corner_mm, points_per_s;
 	double short_mm;		/* shorter lines: pass_is_short() */
 	uint32_t n;			/* columns */
-	uint32_t end;			/* the last segment */
+	uint32_t threads;
+	uint32_t end;			/* the last segment; 0: not known */
+	uint32_t at, last;		/* the next segment, and the last one
+					 * that moves; 0: none yet */
+	struct headings headings[2];	/* of the last one */
 	struct ways ways;
 	struct around windows[PASS_WINDOWS], near;
-	uint32_t run, run_end;		/* nodes that windows look between */
+	uint32_t run, run_end;		/* nodes that windows look between;
+					 * UINT32_MAX: it is farther than any
+					 * window */
+	struct heading_run ahead;	/* how far that was looked for */
 	uint32_t slow;			/* the slowest node of late; 0: none */
 	/* Of each column: */
 	double tol[INTERP_NAXES];	/* mm or degrees that do not count as a
@@ -137,8 +144,9 @@ struct pass {
 	double v_mm_s[INTERP_NAXES], a_mm_s2[INTERP_NAXES];
 	double j_mm_s3[INTERP_NAXES];
 	double step_mm_s[INTERP_NAXES];	/* at a node */
+	double curl_mm_s2[INTERP_NAXES]; /* step of the acceleration there */
 	struct levels v_levels, a_levels, j_levels;
-	double a_least_mm_s2, j_least_mm_s3;
+	double turn_least[2];		/* near_turns_faster() */
 	double a_linear_mm_s2;		/* the least of X Y Z */
 	double a_own_mm_s2[2];		/* of the segments before and behind the
 					 * node, as if nothing bent */
@@ -216,6 +224,30 @@ static inline double pass_off(const struct pass *w, uint32_t j, double along,
 	return smaller(along * rate, PASS_MOST_BESIDE * w->tol[j]);
 }
 
+/** pass_begin() - before the first segment.  @p and @segs are lent. */
+void pass_begin(struct pass *w, const struct interp_limits *l,
+		const struct interp_program *p, struct interp_seg *segs);
+
+/**
+ * pass_walk() - limit segments and nodes up to, but not with, segment @to.
+ *
+ * @known: segments that are whole; @to is no more than pass_seen() of it, or
+ *	   all are known
+ */
+void pass_walk(struct pass *w, uint32_t known, uint32_t to);
+
+/** pass_seen() - the segments for which no limit looks at more than the first
+ *  @known. */
+uint32_t pass_seen(const struct pass *w, uint32_t known);
+
+/** pass_move() - the program is now there. */
+void pass_move(struct pass *w, const struct interp_program *p,
+	       struct interp_seg *segs);
+
+/** pass_finish() - all is known: limit the rest, and find what needs the
+ *  end. */
+void pass_finish(struct pass *w);
+
 /** pass_chord() - find the straight line from node @from to node @to.  Its
  *  length is that of the columns @along. */
 void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
@@ -248,6 +280,9 @@ void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind);
 /** pass_bent_node() - the same by one of them. */
 void pass_bent_node(struct pass *w, const struct bent_node *b);
 
+/** pass_forget() - free what pass_soften() has not freed. */
+void pass_forget(struct pass *w);
+
 /** pass_soften() - the speeds of all nodes are known. */
 void pass_soften(struct pass *w);
 
@@ -261,11 +296,42 @@ void pass_dip_firm(struct pass *w, uint32_t first, uint32_t i, double v_mm_s);
  *  can be does not count; 0: nothing is known of it. */
 double pass_dip_mm_s(const struct pass *w, uint32_t i);
 
+/** pass_level() - a speed, down to its level; that of an axis stays. */
+float pass_level(const struct pass *w, double v_mm_s);
+
+static inline double pass_from_to(const struct pass *w, uint32_t a, uint32_t b)
+{
+	return fabs(w->segs[b].s_mm - w->segs[a].s_mm);
+}
+
+/* Of the narrowest window. */
+#define PASS_SEES	2
+
+/** pass_sees_mm() - nodes so near to a corner may see it in there. */
+static inline double pass_sees_mm(const struct pass *w)
+{
+	return PASS_SEES * w->windows[0].mm;
+}
+
+/** pass_beside_corner() - if the slowest node of late is a corner, the nodes
+ *  beside it are no slower by it. */
+void pass_beside_corner(struct pass *w);
+
 /**
  * pass_curve() - the greatest speed over the node in front of segment @i on the
  * curve of its chords; no more than @most_mm_s is asked for.
  */
 double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s);
+
+/** pass_curl() - the greatest speed over the same node by how the bend of arcs
+ *  changes there. */
+double pass_curl(const struct pass *w, uint32_t last, uint32_t i,
+		 const struct heading *a, const struct heading *b);
+
+/** pass_arch() - the greatest speed over the node in front of segment @i, if it
+ *  is one of several between long lines that turn the same way. */
+double pass_arch(const struct pass *w, uint32_t i, uint32_t along,
+		 double most_mm_s);
 
 /** pass_turn() - the greatest speed over the same node by its own turn. */
 double pass_turn(struct pass *w, uint32_t last, uint32_t i,
@@ -321,8 +387,8 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
  */
 void pass_stretches(struct pass *w);
 
-/** pass_hops() - write slower_* and softer_* of all segments up to @end, the
- *  last one, when all else is known. */
-void pass_hops(struct interp_seg *segs, uint32_t end);
+/** pass_hops() - write slower_* and softer_* of all segments, when all else is
+ *  known. */
+void pass_hops(struct pass *w);
 
 #endif /* SPEED_PASS_H */

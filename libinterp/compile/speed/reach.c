@@ -99,6 +99,12 @@ void pass_bent_node(struct pass *w, const struct bent_node *b)
 		soften_by(w, b, over_mm_s(w, b->before));
 }
 
+void pass_forget(struct pass *w)
+{
+	free(w->bent_nodes.at);
+	w->bent_nodes = (struct bent_nodes) { .n = 0 };
+}
+
 void pass_soften(struct pass *w)
 {
 	struct bent_nodes *k = &w->bent_nodes;
@@ -111,5 +117,5 @@ void pass_soften(struct pass *w)
 					     over_mm_s(w, at));
 	}
 	free(v2);
-	free(k->at);
+	pass_forget(w);
 }

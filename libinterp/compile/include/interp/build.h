@@ -8,6 +8,9 @@
  * column); or -ENOMEM.  After an error the builder can only be destroyed.
  *
  * Threads: allocates; one object belongs to one thread.  Never in the cycle.
+ * For a long program it has a thread of its own, which ends in
+ * interp_build_write() or interp_build_destroy() at the latest; common/both.h
+ * says on which processors.
  */
 #ifndef INTERP_BUILD_H
 #define INTERP_BUILD_H
@@ -36,6 +39,11 @@ struct interp_build_options {
 	double fit_mm;			/* cut lines in a row become curves that
 					 * are this near to them; 0: they
 					 * stay */
+	bool begins_inside;		/* interp_build_from() will be called:
+					 * before that no thread works on it */
+	uint32_t threads;		/* that work on a long program, with the
+					 * caller's: 1 or 2; 0: as many as there
+					 * are processors for them */
 };
 
 /* What a segment carries beside its geometry. */

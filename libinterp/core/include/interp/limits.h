@@ -119,6 +119,8 @@ struct interp_limits {
 	double rotary_radius_mm;	/* > 0: where it is a rotary axis's,
 					 * too */
 	double points_per_s;		/* lattice points; 0: no limit */
+	uint32_t threads;		/* over 1: it has another one for a
+					 * while, which it waits for */
 };
 
 /**

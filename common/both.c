@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* both.c - two things at the same time */
+#include "both.h"
+
+#include <sched.h>
+#include <signal.h>
+
+uint32_t both_processors(void)
+{
+	cpu_set_t set;
+
+	return sched_getaffinity(0, sizeof(set), &set) == 0 ?
+	       (uint32_t)CPU_COUNT(&set) : 1;
+}
+
+int both_start(pthread_t *ret, void *(*run)(void *), void *arg)
+{
+	sigset_t all, old;
+	int err;
+
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &old);
+	err = pthread_create(ret, NULL, run, arg);
+	pthread_sigmask(SIG_SETMASK, &old, NULL);
+	return err;
+}
+
+struct call {
+	void (*f)(void *);
+	void *arg;
+};
+
+static void *run(void *arg)
+{
+	const struct call *c = arg;
+
+	c->f(c->arg);
+	return NULL;
+}
+
+void both(void (*one)(void *), void (*other)(void *), void *arg)
+{
+	struct call c = { other, arg };
+	pthread_t thread;
+	const int err = both_start(&thread, run, &c);
+
+	one(arg);
+	if (err)
+		other(arg);
+	else
+		pthread_join(thread, NULL);
+}
