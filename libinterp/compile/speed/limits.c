@@ -36,10 +36,12 @@ static void add_level(struct levels *l, double at)
  * window of so many tolerances it does not. */
 static void windows(struct pass *w)
 {
-	const uint32_t path = w->ways.xyz ? w->ways.xyz : UINT32_MAX;
-	const double mm = larger(PASS_WINDOW * w->corner_mm,
-				 PASS_FAR * pass_along_tol(w, path));
+	double tol = 0, mm;
 
+	for (uint32_t j = 0; j < w->n; j++)
+		if (!w->ways.xyz || w->ways.xyz >> j & 1)
+			tol = larger(tol, w->tol[j]);
+	mm = larger(PASS_WINDOW * w->corner_mm, PASS_FAR * tol);
 	for (int k = 0; k < PASS_WINDOWS; k++)
 		w->windows[k].mm = mm * (1 << k);
 	w->short_mm = PASS_LONG * mm;
@@ -286,17 +288,21 @@ static void note_parts(struct pass *w, uint32_t last, uint32_t i)
 static void look_for_dip(struct pass *w, uint32_t i)
 {
 	const uint32_t k = i - DIP_NODES;
-	float *node, most;
+	struct interp_seg *s;
+	float most;
 	double v;
 
 	pass_note_dip(w, i);
-	v = i > DIP_NODES ? pass_dip_mm_s(w, k) : 0;
-	if (!(v > 0))
+	if (i <= DIP_NODES)
 		return;
-	node = &w->segs[k - 1].node_mm_s;
+	s = &w->segs[k - 1];
+	/* One that its segments do not reach slows nothing down. */
+	if (s->node_mm_s >= pass_least(s->feed_max_mm_s, s[1].feed_max_mm_s))
+		return;
+	v = pass_dip_mm_s(w, k);
 	most = v < INFINITY ? level(w, v) : INFINITY;
-	if (most > *node)
-		*node = most;
+	if (v > 0 && most > s->node_mm_s)
+		s->node_mm_s = most;
 }
 
 /* The node in front of segment @i; @last is the segment before it that

@@ -232,14 +232,12 @@ COLUMNS_INLINE bool may_bend(const struct pass *w, const struct look *l,
 }
 
 /* The window that shows the slowest. */
-static void note_round(struct pass *w, const struct look *l)
+static void note_shown(const struct look *l, double mm_s, struct shown *ret)
 {
-	struct dip *d = &w->dip;
-
-	if (!(l->round_mm_s < (double)d->round_mm_s))
-		return;
-	d->round_mm_s = (float)l->round_mm_s;
-	d->near_mm = (float)(DIP_NEAR * l->window->mm);
+	if (mm_s < (double)ret->mm_s)
+		*ret = (struct shown) {
+			(float)mm_s, (float)(DIP_NEAR * l->window->mm)
+		};
 }
 
 /*
@@ -253,11 +251,11 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 			    uint32_t along, uint32_t n)
 {
 	const bool beside = (~along & ((1u << n) - 1)) != 0;
-	double per_mm[INTERP_NAXES], firm = INFINITY, enough = INFINITY;
+	double per_mm[INTERP_NAXES], enough = INFINITY;
 	struct look l = { .node = i, .along = along, .most_mm_s = most };
 	bool clear = false;
 
-	w->dip.round_mm_s = INFINITY;
+	w->dip.round.mm_s = w->dip.bow.mm_s = INFINITY;
 	for (uint32_t j = 0; j < n; j++)
 		per_mm[j] = INFINITY;
 	for (int at = 0; at < PASS_WINDOWS && !clear; at++) {
@@ -292,8 +290,9 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 		bow_beside_mm_s(w, &l, d, along, n);
 		if (isinf(enough)) {
 			fast = bow_along_mm_s(w, &l.bow, d, along, n);
-			firm = smaller(firm, smaller(fast, l.firm_mm_s));
-			note_round(w, &l);
+			note_shown(&l, l.round_mm_s, &w->dip.round);
+			note_shown(&l, smaller(fast, l.firm_mm_s),
+				   &w->dip.bow);
 		}
 		change_of(w, at_most, &c, along, n);
 		for (uint32_t j = 0; j < n; j++)
@@ -301,9 +300,8 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 		if (enough < INFINITY && !may_bend(w, &l, per_mm, along, n))
 			break;
 	}
-	firm = smaller(firm, enough);
-	w->dip.firm_mm_s = (float)firm;
-	return smaller(firm, (double)w->dip.round_mm_s);
+	note_shown(&l, enough, &w->dip.bow);
+	return (double)pass_least(w->dip.bow.mm_s, w->dip.round.mm_s);
 }
 
 double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s)
