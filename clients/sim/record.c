@@ -112,7 +112,8 @@ void record_point(void *arg, const struct cycle *c)
 	w->switches += w->last_moved && !(place_moved(c) & w->last_moved);
 	w->last_moved = place_moved(c);
 	if (r->deviation && !escape_is_out(&c->escape)) {
-		const double d = interp_cursor_deviation_mm(&c->cursor);
+		const double d = interp_cursor_deviation_mm(&c->cursor,
+							    &r->from);
 
 		w->deviation_mm_sum += d;
 		if (d > w->deviation_mm_max)

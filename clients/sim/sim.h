@@ -75,6 +75,7 @@ struct sim_run {
 	FILE *pulses, *trace, *report;
 	struct plot *plot;		/* NULL: no picture is wanted */
 	bool deviation;			/* worth its time: a report is wanted */
+	struct interp_deviation from;	/* the path: for it */
 	void (*on_cycle)(struct sim_run *r);	/* NULL: nobody looks */
 	void *on_cycle_arg;
 	int leg;			/* of there and back: 0, 1, 2 */

@@ -65,6 +65,7 @@ static void walk_both_ways(struct interp_build *b, struct trail *t,
 	const struct interp_build_about about = { .lines = 1 };
 	const size_t bytes = interp_build_bytes(b);
 	void *block = malloc(bytes);
+	struct interp_deviation d = { 0 };
 	struct interp_program p;
 	struct interp_cursor c;
 
@@ -78,7 +79,7 @@ static void walk_both_ways(struct interp_build *b, struct trail *t,
 		trail_add(t, &c);
 		if (t->n % 11 == 0 && c.seg.kind == INTERP_CURVE)
 			*ret_deviation_mm = fmax(*ret_deviation_mm,
-				interp_cursor_deviation_mm(&c));
+				interp_cursor_deviation_mm(&c, &d));
 	}
 	/* Back by steps of another length. */
 	t->i = t->n - 1;

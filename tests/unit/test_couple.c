@@ -97,6 +97,7 @@ static void check_axis(const struct move *m, const struct interp_cursor *c,
 static void check_flat(const struct move *m, const struct interp_cursor *c)
 {
 	const double mu_mm = m->o.tolerance_milli * 1e-6;
+	struct interp_deviation d = { 0 };
 	int main = 0;
 
 	for (int i = 1; i < INTERP_NAXES; i++)
@@ -106,7 +107,7 @@ static void check_flat(const struct move *m, const struct interp_cursor *c)
 			check_axis(m, c, main, i);
 	}
 	if (m->o.perpendicular && m->o.strategy != INTERP_CENTRED)
-		assert_true(interp_cursor_deviation_mm(c) <= mu_mm + 1e-12);
+		assert_true(interp_cursor_deviation_mm(c, &d) <= mu_mm + 1e-12);
 }
 
 /* -- Tree: every pair in its range, every leaf near its share ------------- */

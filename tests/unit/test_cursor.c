@@ -277,6 +277,7 @@ static void simultaneous_points_are_within_half_a_pulse_of_the_path(void **st)
 	for (uint64_t seed = 200; seed <= 240; seed++) {
 		uint64_t s = seed;
 		struct made m = random_program(INTERP_SIMULTANEOUS, &s, 30);
+		struct interp_deviation d = { 0 };
 		struct interp_cursor c;
 
 		print_on_failure("seed", seed);
@@ -284,7 +285,7 @@ static void simultaneous_points_are_within_half_a_pulse_of_the_path(void **st)
 		interp_cursor_aim(&c, 1e9);
 		/* Five linear axes, half a pulse each. */
 		while (interp_cursor_step(&c) == INTERP_MOVED)
-			assert_true(interp_cursor_deviation_mm(&c) <
+			assert_true(interp_cursor_deviation_mm(&c, &d) <
 				    0.0005 * sqrt(5) + 1e-9);
 		unmake(&m);
 	}
@@ -296,6 +297,7 @@ static void point_by_point_points_are_near_the_path(void **st)
 	for (uint64_t seed = 300; seed <= 340; seed++) {
 		uint64_t s = seed;
 		struct made m = random_program(INTERP_POINT_BY_POINT, &s, 30);
+		struct interp_deviation d = { 0 };
 		struct interp_cursor c;
 
 		print_on_failure("seed", seed);
@@ -303,7 +305,7 @@ static void point_by_point_points_are_near_the_path(void **st)
 		interp_cursor_aim(&c, 1e9);
 		/* A tree is three levels deep at the most, a pulse each. */
 		while (interp_cursor_step(&c) == INTERP_MOVED)
-			assert_true(interp_cursor_deviation_mm(&c) <
+			assert_true(interp_cursor_deviation_mm(&c, &d) <
 				    0.001 * 3);
 		unmake(&m);
 	}

@@ -152,6 +152,7 @@ static void a_curve_is_walked_back_by_the_points_it_came(void **state)
 
 static double worst_um(const struct made *m)
 {
+	struct interp_deviation d = { 0 };
 	struct interp_cursor c;
 	double worst = 0;
 
@@ -159,7 +160,7 @@ static double worst_um(const struct made *m)
 	interp_cursor_aim(&c, 1e9);
 	for (int i = 0; interp_cursor_step(&c) == INTERP_MOVED; i++) {
 		if (i % 7 == 0)
-			worst = fmax(worst, interp_cursor_deviation_mm(&c));
+			worst = fmax(worst, interp_cursor_deviation_mm(&c, &d));
 	}
 	return worst * 1000;
 }

@@ -33,44 +33,47 @@ static double node_mm(const struct interp_cursor *c, uint32_t j, bool at_end)
 	       c->p.head->pulse_mm[c->p.head->column[j]];
 }
 
-/* Where the foot of the point on the line is, as a share of the line. */
-static double line_foot(const struct interp_cursor *c, uint32_t axes)
-{
-	double d2 = 0, dr = 0;
-
-	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
-		const uint32_t axis = c->p.head->column[j];
-		const double from = node_mm(c, j, false);
-		const double d = node_mm(c, j, true) - from;
-		const double r = c->pos[axis] * c->p.head->pulse_mm[axis] -
-				 from;
-
-		if (!(axes & 1u << axis))
-			continue;
-		d2 += d * d;
-		dr += d * r;
-	}
-	return !(d2 > 0) || dr <= 0 ? 0 : dr >= d2 ? 1 : dr / d2;
-}
-
 /* The distance square to the line from node to node, axis by axis from the
  * foot, so that no large squares are subtracted. */
-static double line_deviation(const struct interp_cursor *c, uint32_t axes)
+static double line_deviation(const struct interp_cursor *c,
+			     const struct interp_deviation *d)
 {
-	const double t = line_foot(c, axes);
-	double r2 = 0;
+	double from[INTERP_NAXES], dr = 0, r2 = 0, t;
 
+	for (uint32_t k = 0; k < d->nways; k++) {
+		const struct interp_deviation_way *w = &d->way[k];
+
+		from[k] = c->pos[w->axis] * w->pulse_mm - w->from_mm;
+		dr += w->mm * from[k];
+	}
+	/* Where the foot of the point is, as a share of the line. */
+	t = !(d->way2 > 0) || dr <= 0 ? 0 : dr >= d->way2 ? 1 : dr / d->way2;
+	for (uint32_t k = 0; k < d->nways; k++) {
+		const double r = from[k] - t * d->way[k].mm;
+
+		r2 += r * r;
+	}
+	return sqrt(r2);
+}
+
+/* An axis that stands where the line is adds nothing, so it is left out. */
+static void set_line(const struct interp_cursor *c, uint32_t axes,
+		     struct interp_deviation *d)
+{
+	d->of = line_deviation;
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		const uint32_t axis = c->p.head->column[j];
 		const double from = node_mm(c, j, false);
-		const double d = node_mm(c, j, true) - from;
-		const double r = c->pos[axis] * c->p.head->pulse_mm[axis] -
-				 from - t * d;
+		const struct interp_deviation_way w = {
+			axis, c->p.head->pulse_mm[axis], from,
+			node_mm(c, j, true) - from,
+		};
+		const bool off = c->pos[axis] * w.pulse_mm != from;
 
-		if (axes & 1u << axis)
-			r2 += r * r;
+		d->way2 += axes >> axis & 1 ? w.mm * w.mm : 0;
+		if (axes >> axis & 1 && (w.mm != 0 || off))
+			d->way[d->nways++] = w;
 	}
-	return sqrt(r2);
 }
 
 /* Squared distance from the point at share @t of the arc. */
@@ -101,7 +104,8 @@ static double arc_gap2(const struct interp_cursor *c, uint32_t axes, double t)
 
 /* The nearest place of a helix is near the place of the point: within a few
  * ticks or, where the helix is steep, less than a quarter of a radian. */
-static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
+static double helix_deviation(const struct interp_cursor *c,
+			      const struct interp_deviation *d)
 {
 	const double at = (double)c->measure / (double)c->whole;
 	const double near = fmax(16.0 / c->seg.ticks,
@@ -111,13 +115,13 @@ static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
 	for (int i = 0; i < 40; i++) {
 		const double third = (hi - lo) / 3;
 
-		if (arc_gap2(c, axes, lo + third) <
-		    arc_gap2(c, axes, hi - third))
+		if (arc_gap2(c, d->axes, lo + third) <
+		    arc_gap2(c, d->axes, hi - third))
 			hi -= third;
 		else
 			lo += third;
 	}
-	return sqrt(arc_gap2(c, axes, (lo + hi) / 2));
+	return sqrt(arc_gap2(c, d->axes, (lo + hi) / 2));
 }
 
 /*
@@ -127,8 +131,9 @@ static double helix_deviation(const struct interp_cursor *c, uint32_t axes)
  * two radii counts as on the arc.
  */
 static double circle_deviation(const struct interp_cursor *c,
-			       const struct interp_arc *arc)
+			       const struct interp_deviation *d)
 {
+	const struct interp_arc *arc = &d->arc;
 	const double *pulse = c->p.head->pulse_mm;
 	const double at = c->whole ? (double)c->measure / (double)c->whole : 0;
 	const double r = hypot(c->pos[arc->axis_a] * pulse[arc->axis_a] -
@@ -136,12 +141,20 @@ static double circle_deviation(const struct interp_cursor *c,
 			       c->pos[arc->axis_b] * pulse[arc->axis_b] -
 			       arc->b_mm) - arc->r_mm;
 
-	if (pulse_strategy(c->p.head->strategy)->at_once)
+	if (d->grows)
 		return fabs(r - arc->dr_mm * at);
 	return fmax(fmax(r - fmax(arc->dr_mm, 0), fmin(arc->dr_mm, 0) - r), 0);
 }
 
-static double arc_deviation(const struct interp_cursor *c, uint32_t axes)
+static void set_circle(const struct interp_cursor *c,
+		       const struct interp_arc *arc, struct interp_deviation *d)
+{
+	d->of = circle_deviation;
+	d->arc = *arc;
+	d->grows = pulse_strategy(c->p.head->strategy)->at_once;
+}
+
+static bool is_helix(const struct interp_cursor *c, uint32_t axes)
 {
 	const struct interp_arc *arc = &c->arc;
 
@@ -151,26 +164,24 @@ static double arc_deviation(const struct interp_cursor *c, uint32_t axes)
 		if (axis != arc->axis_a && axis != arc->axis_b &&
 		    axes & 1u << axis && c->whole &&
 		    pulse_node(c, j, false) != pulse_node(c, j, true))
-			return helix_deviation(c, axes);
+			return true;
 	}
-	return circle_deviation(c, arc);
+	return false;
 }
 
-/* The distance from the contour whose length is counted. */
-static double pair_deviation(const struct interp_cursor *c, uint32_t axes)
+/* Of a pair, the contour whose length is counted. */
+static const struct interp_arc *counted(const struct interp_cursor *c,
+					uint32_t axes)
 {
 	const uint32_t xy = 1u << INTERP_X | 1u << INTERP_Y;
 	const struct interp_arc *xy_arc = &c->couple.side[0];
-	const struct interp_arc *arc = xy_arc->r_mm > 0 || axes & xy ? xy_arc :
-				       &c->couple.side[1];
 
-	return arc->r_mm > 0 ? circle_deviation(c, arc) :
-			       line_deviation(c, 1u << arc->axis_a |
-						 1u << arc->axis_b);
+	return xy_arc->r_mm > 0 || axes & xy ? xy_arc : &c->couple.side[1];
 }
 
 /* The nearest place is a few pulses from the place of the point. */
-static double curve_deviation(const struct interp_cursor *c, uint32_t axes)
+static double curve_deviation(const struct interp_cursor *c,
+			      const struct interp_deviation *d)
 {
 	struct interp_curve_walk k = c->curve;
 	const double at = k.place_mm * c->tick / k.turns;
@@ -180,23 +191,39 @@ static double curve_deviation(const struct interp_cursor *c, uint32_t axes)
 	for (int i = 0; i < 32; i++) {
 		const double third = (hi - lo) / 3;
 
-		if (pulse_curve_gap2(c, &k, axes, lo + third) <
-		    pulse_curve_gap2(c, &k, axes, hi - third))
+		if (pulse_curve_gap2(c, &k, d->axes, lo + third) <
+		    pulse_curve_gap2(c, &k, d->axes, hi - third))
 			hi -= third;
 		else
 			lo += third;
 	}
-	return sqrt(pulse_curve_gap2(c, &k, axes, (lo + hi) / 2));
+	return sqrt(pulse_curve_gap2(c, &k, d->axes, (lo + hi) / 2));
 }
 
-double interp_cursor_deviation_mm(const struct interp_cursor *c)
+static void set_pair(const struct interp_cursor *c, struct interp_deviation *d)
 {
-	const uint32_t axes = length_axes(c);
+	const struct interp_arc *arc = counted(c, d->axes);
 
+	if (arc->r_mm > 0)
+		set_circle(c, arc, d);
+	else
+		set_line(c, 1u << arc->axis_a | 1u << arc->axis_b, d);
+}
+
+void interp_deviation_set(const struct interp_cursor *c,
+			  struct interp_deviation *d)
+{
+	*d = (struct interp_deviation) {
+		.nodes = c->p.nodes, .index = c->index, .axes = length_axes(c),
+	};
 	if (c->seg.kind == INTERP_PAIR)
-		return pair_deviation(c, axes);
-	if (c->seg.kind == INTERP_CURVE)
-		return curve_deviation(c, axes);
-	return c->seg.kind == INTERP_ARC ? arc_deviation(c, axes) :
-					   line_deviation(c, axes);
+		set_pair(c, d);
+	else if (c->seg.kind == INTERP_CURVE)
+		d->of = curve_deviation;
+	else if (c->seg.kind != INTERP_ARC)
+		set_line(c, d->axes, d);
+	else if (is_helix(c, d->axes))
+		d->of = helix_deviation;
+	else
+		set_circle(c, &c->arc, d);
 }

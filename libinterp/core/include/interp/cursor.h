@@ -283,10 +283,38 @@ bool interp_cursor_slide(struct interp_cursor *c);
 /** interp_cursor_stop() - forget the rest of the distance aimed at. */
 void interp_cursor_stop(struct interp_cursor *c);
 
+/* What is the same for all points of a segment; begins as { 0 }, and belongs to
+ * one cursor. */
+struct interp_deviation {
+	const int64_t *nodes;		/* of this program, */
+	uint32_t index;			/* this segment */
+	double (*of)(const struct interp_cursor *c,
+		     const struct interp_deviation *d);
+	uint32_t axes;			/* its length is counted in */
+	uint32_t nways;
+	struct interp_deviation_way {
+		uint32_t axis;
+		double pulse_mm, from_mm, mm;
+	} way[INTERP_NAXES];		/* of a line */
+	double way2;			/* its length squared */
+	struct interp_arc arc;		/* of a circle */
+	bool grows;			/* its radius with the place */
+};
+
+/** interp_deviation_set() - for the segment in which @c is. */
+void interp_deviation_set(const struct interp_cursor *c,
+			  struct interp_deviation *d);
+
 /**
  * interp_cursor_deviation_mm() - distance of pos from the programmed path,
  * square to it, over the axes its length is counted in.
  */
-double interp_cursor_deviation_mm(const struct interp_cursor *c);
+static inline double interp_cursor_deviation_mm(const struct interp_cursor *c,
+						struct interp_deviation *d)
+{
+	if (d->nodes != c->p.nodes || d->index != c->index)
+		interp_deviation_set(c, d);
+	return d->of(c, d);
+}
 
 #endif /* INTERP_CURSOR_H */
