@@ -235,7 +235,7 @@ static int take(struct jobs *j, uint32_t n)
 	int err;
 
 	electrode_forget(j);
-	err = shm_program_open(&block, &bytes, j->machine, n);
+	err = shm_program_read(&block, &bytes, j->machine, n);
 	if (err < 0)
 		return err;
 	err = interp_program_map(&p, block, bytes);

@@ -77,7 +77,7 @@ void eta_take(struct eta *l, const char *machine, uint32_t n)
 	if (l->n == n)
 		return;
 	eta_fini(l);
-	if (n && shm_program_open(&block, &bytes, machine, n) == 0) {
+	if (n && shm_program_read(&block, &bytes, machine, n) == 0) {
 		if (interp_program_map(&p, block, bytes) == 0)
 			eta_measure(l, &p);
 		shm_program_unmap(block, bytes);

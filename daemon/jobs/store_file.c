@@ -239,7 +239,7 @@ static int check(struct store *s, sqlite3 *db)
 
 int store_file_probe(const struct store *s)
 {
-	char path[600];
+	char path[600] = "";	/* all of it is written */
 	int fd, err = 0;
 
 	snprintf(path, sizeof(path), "%s.probe", s->path);

@@ -144,8 +144,17 @@ static int64_t program_size(int fd)
 	return size > 0 && st.st_blocks * 512 >= size ? size : -EPROTO;
 }
 
-int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
-		     uint32_t n)
+typedef int make_fn(void **ret, int fd, size_t bytes);
+
+/* Nobody but its maker may write or truncate it. */
+static int own_or_copy(void **ret, int fd, size_t bytes)
+{
+	return object_check(fd) == 0 ? object_map(ret, fd, bytes, false) :
+				       copy_make(ret, fd, bytes);
+}
+
+static int program_open(const void **ret, size_t *ret_bytes,
+			const char *machine, uint32_t n, make_fn *make)
 {
 	char path[OBJECT_PATH_MAX];
 	int err = program_path(path, machine, n);
@@ -160,13 +169,25 @@ int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 		return -errno;
 
 	size = program_size(fd);
-	err = size < 0 ? (int)size : copy_make(&at, fd, (size_t)size);
+	err = size < 0 ? (int)size : make(&at, fd, (size_t)size);
 	close(fd);
 	if (err < 0)
 		return err;
 	*ret = at;
 	*ret_bytes = (size_t)size;
 	return 0;
+}
+
+int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
+		     uint32_t n)
+{
+	return program_open(ret, ret_bytes, machine, n, copy_make);
+}
+
+int shm_program_read(const void **ret, size_t *ret_bytes, const char *machine,
+		     uint32_t n)
+{
+	return program_open(ret, ret_bytes, machine, n, own_or_copy);
 }
 
 struct shm_stamp shm_program_stamp(const char *machine, uint32_t n)

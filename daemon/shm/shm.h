@@ -518,6 +518,13 @@ int shm_program_name(int fd, const char *machine, uint32_t n);
  */
 int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
 		     uint32_t n);
+
+/**
+ * shm_program_read() - the same to look at.  One that this user made is not
+ * copied: nobody else can change it.
+ */
+int shm_program_read(const void **ret, size_t *ret_bytes, const char *machine,
+		     uint32_t n);
 void shm_program_unmap(const void *block, size_t bytes);
 
 /** SHM_PROGRAM_AHEAD - a name until it is known which n it will have. */

@@ -78,7 +78,7 @@ static void take_program(struct values *v, uint32_t n)
 	if (n == v->n)
 		return;
 	leave_program(v);
-	if (n == 0 || shm_program_open(&block, &bytes, v->machine, n) < 0)
+	if (n == 0 || shm_program_read(&block, &bytes, v->machine, n) < 0)
 		return;
 	if (interp_program_map(&p, block, bytes) == 0)
 		copy_program(v, &p);

@@ -53,10 +53,13 @@ static void a_node_is_passed_as_the_arc_that_cuts_its_corner(void **st)
 		const double most = fmin(sqrt(A_MAX * sqrt(2) * r),
 					 cbrt(J_MAX * sqrt(2) * r * r));
 		const double least = fmin(sqrt(A_MAX * r), cbrt(J_MAX * r * r));
+		/* From one speed of Y or X to the other with its jerk. */
+		const double smooth = cbrt(36 * corner * corner * J_MAX) /
+				      fmax(sin(phi), 1 - cos(phi));
 		const double v = (double)node_of_turn(turns[i]);
 
-		assert_true(v <= most);
-		assert_true(v >= least * (1 - 1.0 / 31));
+		assert_true(v <= fmin(most, smooth));
+		assert_true(v >= fmin(least, smooth) * (1 - 1.0 / 31));
 	}
 }
 
@@ -217,7 +220,7 @@ static double slowest_of_circle(double r, double chord_mm)
 	return least;
 }
 
-/* However short its lines are. */
+/* However short its lines are, if they are as near to it as a corner. */
 static void a_polyline_is_slowed_as_the_curve_it_follows(void **st)
 {
 	static const double radii[] = { 0.3, 1, 3 };
@@ -227,7 +230,7 @@ static void a_polyline_is_slowed_as_the_curve_it_follows(void **st)
 		const double r = radii[i];
 		const double most = fmin(sqrt(A_MAX * r), cbrt(J_MAX * r * r));
 
-		for (double mm = 0.002; mm < 0.2; mm *= 3) {
+		for (double mm = 0.002; mm * mm < 8 * corner * r; mm *= 3) {
 			const double v = slowest_of_circle(r, mm);
 
 			assert_true(v <= 1.1 * most);

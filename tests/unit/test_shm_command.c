@@ -165,6 +165,26 @@ static void a_program_is_read_as_written_and_kept_while_mapped(void **state)
 	assert_int_equal(shm_program_open(&old, &bytes, machine, 5), -ENOENT);
 }
 
+static void who_made_a_program_looks_at_it_without_a_copy(void **state)
+{
+	const void *seen, *copy;
+	uint8_t *block;
+	size_t bytes;
+
+	(void)state;
+	assert_int_equal(shm_program_create((void **)&block, machine, 5, 16),
+			 0);
+	assert_int_equal(shm_program_read(&seen, &bytes, machine, 5), 0);
+	assert_int_equal(shm_program_open(&copy, &bytes, machine, 5), 0);
+	block[3] = 7;
+	assert_int_equal(((const uint8_t *)seen)[3], 7);
+	assert_int_equal(((const uint8_t *)copy)[3], 0);
+	shm_program_remove(machine, 5);
+	shm_program_unmap(seen, bytes);
+	shm_program_unmap(copy, bytes);
+	shm_program_unmap(block, bytes);
+}
+
 static void a_program_is_there_when_it_is_named(void **state)
 {
 	const void *at;
@@ -253,6 +273,7 @@ int main(void)
 		cmocka_unit_test(the_last_ids_are_remembered_through_a_restart),
 		cmocka_unit_test(a_program_is_read_as_written_and_kept_while_mapped),
 		cmocka_unit_test(a_file_of_another_inode_or_time_is_another),
+		cmocka_unit_test(who_made_a_program_looks_at_it_without_a_copy),
 		cmocka_unit_test(a_program_is_there_when_it_is_named),
 		cmocka_unit_test(a_program_with_holes_is_not_read),
 	};

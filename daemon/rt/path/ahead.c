@@ -81,43 +81,6 @@ static bool is_stand(const struct cycle *c, int toward, uint32_t i)
 	return (toward > 0 ? s[-1].flags : s->flags) & INTERP_SEG_STAND;
 }
 
-/*
- * What every axis allows, from here to where the move ends or has to stop.  It
- * is the same for the whole of a move, so what can be met can be met to its
- * end.
- * @ret_stand_mm: the place up to which that holds; INFINITY: everywhere.
- */
-static struct mover_limits limits_of(const struct cycle *c,
-				     const struct ahead_move *w,
-				     double *ret_stand_mm)
-{
-	const struct interp_program *p = &c->cursor.p;
-	struct mover_limits l = w->l;
-	uint32_t i = lookahead_index(c, w->toward);
-
-	*ret_stand_mm = INFINITY;
-	for (int n = 0; i < p->head->nsegs; n++) {
-		const struct interp_seg *s = &p->segs[i];
-		const uint32_t hop = w->toward > 0 ? s->softer_ahead :
-						     s->softer_behind;
-
-		if (n > 0 && is_beyond(c, w, i)) {
-			*ret_stand_mm = w->goal_mm;
-			break;
-		}
-		if (n == SOFTER_MAX || (n > 0 && is_stand(c, w->toward, i))) {
-			*ret_stand_mm = begin_mm(c, w->toward, i);
-			break;
-		}
-		law_soften(&l, s);
-		if (hop == 0 || (w->toward > 0 ? hop >= p->head->nsegs - i :
-						 hop > i))
-			break;
-		i = w->toward > 0 ? i + hop : i - hop;
-	}
-	return l;
-}
-
 static bool is_softer(const struct mover_limits *l,
 		      const struct mover_limits *than)
 {
@@ -126,15 +89,85 @@ static bool is_softer(const struct mover_limits *l,
 	       l->j_max_mm_s3 < than->j_max_mm_s3;
 }
 
+/* What every axis allows, up to a place. */
+struct soft {
+	struct mover_limits l;
+	double stand_mm;		/* INFINITY: everywhere */
+	uint32_t next;			/* the segment there, if it was not
+					 * looked farther; else 0 */
+};
+
+/*
+ * Look on from segment @i.  It is the same for the whole of a move, so what can
+ * be met can be met to its end.
+ * @begins: a move begins there; else it goes on as far as nothing is softer.
+ */
+static void look_on(const struct cycle *c, const struct ahead_move *w,
+		    uint32_t i, bool begins, struct soft *ret)
+{
+	const struct interp_program *p = &c->cursor.p;
+
+	ret->stand_mm = INFINITY;
+	ret->next = 0;
+	for (int n = 0; i < p->head->nsegs; n++) {
+		const struct interp_seg *s = &p->segs[i];
+		const uint32_t hop = w->toward > 0 ? s->softer_ahead :
+						     s->softer_behind;
+		const bool first = begins && n == 0;
+		struct mover_limits l = ret->l;
+
+		if (!first && is_beyond(c, w, i)) {
+			ret->stand_mm = w->goal_mm;
+			break;
+		}
+		law_soften(&l, s);
+		if (n == SOFTER_MAX)
+			ret->next = i;
+		if (ret->next || (!first && is_stand(c, w->toward, i)) ||
+		    (!begins && is_softer(&l, &ret->l))) {
+			ret->stand_mm = begin_mm(c, w->toward, i);
+			break;
+		}
+		ret->l = l;
+		if (hop == 0 || (w->toward > 0 ? hop >= p->head->nsegs - i :
+						 hop > i))
+			break;
+		i = w->toward > 0 ? i + hop : i - hop;
+	}
+}
+
+/* From here to where the move ends or has to stand. */
+static struct soft limits_of(const struct cycle *c, const struct ahead_move *w)
+{
+	struct soft s = { .l = w->l };
+
+	look_on(c, w, lookahead_index(c, w->toward), true, &s);
+	return s;
+}
+
 /* A move that goes on to another goal stands at the first one, if beyond it the
  * axes allow less. */
 static void go_on_to(struct cycle *c, const struct ahead_move *w)
 {
-	double stand_mm;
-	const struct mover_limits l = limits_of(c, w, &stand_mm);
+	const struct soft s = limits_of(c, w);
 
-	if (!is_softer(&l, &c->ahead.l))
-		c->ahead.stand_mm = stand_mm;
+	if (is_softer(&s.l, &c->ahead.l))
+		return;
+	c->ahead.stand_mm = s.stand_mm;
+	c->ahead.next = s.next;
+}
+
+/* Not all of the way was looked at when the move began: some more in each cycle
+ * is farther than it goes. */
+static void go_on(struct cycle *c, const struct ahead_move *w)
+{
+	struct soft s = { .l = c->ahead.l };
+
+	if (c->ahead.next == 0)
+		return;
+	look_on(c, w, c->ahead.next, false, &s);
+	c->ahead.stand_mm = s.stand_mm;
+	c->ahead.next = s.next;
 }
 
 /* Does it go the other way, or brake from that?  Up to where it stands, what it
@@ -164,13 +197,22 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 	c->cut_short = false;
 	if (!short_of && a->state == c->state && a->toward == w->toward &&
 	    a->override == by && a->goal_mm == w->goal_mm &&
-	    !mover_is_standing(&c->mover))
+	    !mover_is_standing(&c->mover)) {
+		go_on(c, w);
 		return;
+	}
 	turns = is_turning(c, w);
-	if (a->state != c->state || mover_is_standing(&c->mover))
-		a->l = limits_of(c, w, &a->stand_mm);
-	else if (!turns)
+	if (a->state != c->state || mover_is_standing(&c->mover)) {
+		const struct soft s = limits_of(c, w);
+
+		a->l = s.l;
+		a->stand_mm = s.stand_mm;
+		a->next = s.next;
+	} else if (turns) {
+		a->next = 0;
+	} else {
 		go_on_to(c, w);
+	}
 	a->turns = turns;
 	a->state = c->state;
 	a->toward = w->toward;
@@ -183,7 +225,8 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 	a->to_place = false;
 }
 
-/* Is what was planned for still to come? */
+/* Is what was planned for still to come, and what is left of the plan no faster
+ * than that?  The ceilings of short lines change from line to line. */
 static bool plan_holds(struct cycle *c, double v_mm_s)
 {
 	const struct cycle_ahead *a = &c->ahead;
@@ -191,7 +234,7 @@ static bool plan_holds(struct cycle *c, double v_mm_s)
 	struct mover *m = &c->mover;
 
 	if (!a->to_place || m->kind != MOVER_TO_PLACE ||
-	    a->v_max_mm_s > v_mm_s ||
+	    (a->v_max_mm_s > v_mm_s && mover_most_mm_s(m) > v_mm_s) ||
 	    (a->toward * left < MOVER_ONTO_MM &&
 	     (m->pass_mm_s != 0 || mover_is_standing(&c->mover))) ||
 	    fabs(m->goal - m->gone_mm - left) > MOVER_ONTO_MM)

@@ -11,6 +11,9 @@
  * One that is passed on the way up, before it is too slow, is missed all the
  * same if letting go of the acceleration comes too late for it: it may be slow
  * because of what is behind it, and nodes that are no slower are not looked at.
+ *
+ * One that is passed on the way down, before the brake is let go, is met if
+ * letting go at once passes it at its speed or less: no plan is faster there.
  */
 #include "path/lookahead.h"
 #include "path/laws.h"
@@ -56,11 +59,25 @@ static void set_out(struct lookahead *k, struct interp_scurve_state s)
 				       0);
 }
 
+/* Letting go of the brake at once, where the speed has fallen to @v_mm_s. */
+static double lets_go_mm(const struct lookahead *k, double v_mm_s)
+{
+	const double v = k->s.v_mm_s, a = -k->s.a_mm_s2, j = k->l.j_max_mm_s3;
+	const double root = a * a - 2 * j * (v - v_mm_s);
+	const double t = (a - sqrt(root > 0 ? root : 0)) / j;
+
+	return (v - (a / 2 - j * t / 6) * t) * t;
+}
+
 /* By how much a place is met. */
 static double room_mm(const struct lookahead *k, double left_mm, double v_mm_s)
 {
 	if (v_mm_s <= 0)
 		return left_mm + MOVER_ONTO_MM - slowed_mm(k, 0);
+	if (v_mm_s < k->plan_mm_s && v_mm_s < k->s.v_mm_s &&
+	    v_mm_s >= k->let_go_mm_s)
+		return left_mm - MOVER_ONTO_MM - k->s.x_mm -
+		       lets_go_mm(k, v_mm_s);
 	if (v_mm_s < k->plan_mm_s)
 		return left_mm - MOVER_ONTO_MM -
 		       slowed_mm(k, v_mm_s < k->let_go_mm_s ? v_mm_s :

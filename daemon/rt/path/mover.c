@@ -74,6 +74,23 @@ void mover_aim_place(struct mover *m, const struct mover_limits *l,
 	m->pass_mm_s = pass_mm_s;
 }
 
+double mover_most_mm_s(const struct mover *m)
+{
+	const struct interp_scurve *p = &m->plan;
+	double most = fmax(fabs(m->v_mm_s), fabs(p->end.v_mm_s));
+
+	for (int k = 0; k < p->n; k++) {
+		const struct interp_scurve_state from =
+			interp_scurve_at(p, fmax(p->t_s[k], m->t_s));
+		const double a = from.a_mm_s2, j = p->j_mm_s3[k];
+
+		most = fmax(most, fabs(from.v_mm_s));
+		if (a * j < 0)
+			most = fmax(most, fabs(from.v_mm_s - a * a / (2 * j)));
+	}
+	return most;
+}
+
 static bool stands_there(const struct mover *m)
 {
 	return m->kind == MOVER_TO_PLACE && m->pass_mm_s == 0 &&

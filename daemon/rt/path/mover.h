@@ -94,6 +94,10 @@ void mover_aim_speed(struct mover *m, const struct mover_limits *l,
 void mover_aim_place(struct mover *m, const struct mover_limits *l,
 		     double left_mm, double pass_mm_s);
 
+/** mover_most_mm_s() - no less than the greatest speed that is left of the
+ *  plan. */
+double mover_most_mm_s(const struct mover *m);
+
 /**
  * mover_peek() - the state after the next cycle; its place counts from here.
  */

@@ -12,8 +12,10 @@
 
 #include <math.h>
 
-/* The share by which that may be faster: a real bend comes and goes, too. */
-#define DIP_MOST	1.06f
+/* The share by which that may be faster: a real bend comes and goes, too.  What
+ * is no difference of differences is certain, but for little. */
+#define ROUND_MOST	1.06f
+#define BOW_MOST	1.03f
 
 void pass_note_dip(struct pass *w, uint32_t i)
 {
@@ -31,32 +33,39 @@ void pass_dip_firm(struct pass *w, uint32_t first, uint32_t i, double v_mm_s)
 	}
 }
 
-/* On one side of node @i; @way is 1 or -1. */
-static float fastest(const struct pass *w, uint32_t i, uint32_t way)
+static const struct shown *shown(const struct pass *w, uint32_t i, bool round)
 {
 	const struct dip *d = &w->dips[i % DIP_RING];
-	const double mm = (double)d->near_mm, here = w->segs[i].s_mm;
-	const float enough = DIP_MOST * d->round_mm_s;
-	float most = d->round_mm_s;
+
+	return round ? &d->round : &d->bow;
+}
+
+/* On one side of node @i; @way is 1 or -1. */
+static float fastest(const struct pass *w, uint32_t i, uint32_t way, bool round)
+{
+	const struct shown *is = shown(w, i, round);
+	const double mm = (double)is->near_mm, here = w->segs[i].s_mm;
+	float most = is->mm_s;
 
 	for (uint32_t n = 0, k = i + way; n < DIP_NODES; n++, k += way) {
-		const struct dip *near = &w->dips[k % DIP_RING];
-
-		if (near->node != k || fabs(w->segs[k].s_mm - here) > mm)
+		if (w->dips[k % DIP_RING].node != k ||
+		    fabs(w->segs[k].s_mm - here) > mm)
 			break;
-		if (near->round_mm_s > most)
-			most = near->round_mm_s;
+		if (shown(w, k, round)->mm_s > most)
+			most = shown(w, k, round)->mm_s;
 	}
-	return pass_least(most, enough);
+	return pass_least(most, (round ? ROUND_MOST : BOW_MOST) * is->mm_s);
 }
 
 double pass_dip_mm_s(const struct pass *w, uint32_t i)
 {
 	const struct dip *d = &w->dips[i % DIP_RING];
+	float v = d->firm_mm_s;
 
-	if (d->node != i || d->round_mm_s >= d->firm_mm_s)
+	if (d->node != i || pass_least(d->round.mm_s, d->bow.mm_s) >= v)
 		return 0;
-	return (double)pass_least(d->firm_mm_s,
-				  pass_least(fastest(w, i, UINT32_MAX),
-					     fastest(w, i, 1)));
+	for (int round = 0; round < 2; round++)
+		v = pass_least(v, pass_least(fastest(w, i, UINT32_MAX, round),
+					     fastest(w, i, 1, round)));
+	return (double)v;
 }

@@ -36,13 +36,27 @@ static void add_level(struct levels *l, double at)
  * window of so many tolerances it does not. */
 static void windows(struct pass *w)
 {
-	const uint32_t path = w->ways.xyz ? w->ways.xyz : UINT32_MAX;
-	const double mm = larger(PASS_WINDOW * w->corner_mm,
-				 PASS_FAR * pass_along_tol(w, path));
+	double tol = 0, mm;
 
+	for (uint32_t j = 0; j < w->n; j++)
+		if (!w->ways.xyz || w->ways.xyz >> j & 1)
+			tol = larger(tol, w->tol[j]);
+	mm = larger(PASS_WINDOW * w->corner_mm, PASS_FAR * tol);
 	for (int k = 0; k < PASS_WINDOWS; k++)
 		w->windows[k].mm = mm * (1 << k);
 	w->short_mm = PASS_LONG * mm;
+}
+
+/* Of a turn below 1 the radius of a corner is at least 6.46 * corner_mm /
+ * turn. */
+static void note_turn(struct pass *w, uint32_t j)
+{
+	const double far = 6.4 * w->corner_mm, step = w->step_mm_s[j];
+
+	w->turn_least[0] = smaller(w->turn_least[0],
+				   smaller(w->a_mm_s2[j] * far, step * step));
+	w->turn_least[1] = smaller(w->turn_least[1],
+				   w->j_mm_s3[j] * far * far);
 }
 
 void pass_begin(struct pass *w, const struct interp_limits *l,
@@ -52,8 +66,7 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 			     .points_per_s = l->points_per_s,
 			     .threads = l->threads,
 			     .n = p->head->naxes, .at = 1,
-			     .a_least_mm_s2 = INFINITY,
-			     .j_least_mm_s3 = INFINITY,
+			     .turn_least = { INFINITY, INFINITY },
 			     .a_linear_mm_s2 = INFINITY,
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
@@ -73,8 +86,9 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 		add_level(&w->v_levels, m->v_max_mm_s);
 		add_level(&w->a_levels, m->a_max_mm_s2);
 		add_level(&w->j_levels, m->j_max_mm_s3);
-		w->a_least_mm_s2 = smaller(w->a_least_mm_s2, m->a_max_mm_s2);
-		w->j_least_mm_s3 = smaller(w->j_least_mm_s3, m->j_max_mm_s3);
+		w->curl_mm_s2[j] = cbrt(24 * l->corner_mm * m->j_max_mm_s3 *
+					m->j_max_mm_s3);
+		note_turn(w, j);
 		if (w->ways.xyz >> j & 1)
 			w->a_linear_mm_s2 = smaller(w->a_linear_mm_s2,
 						    m->a_max_mm_s2);
@@ -274,17 +288,21 @@ static void note_parts(struct pass *w, uint32_t last, uint32_t i)
 static void look_for_dip(struct pass *w, uint32_t i)
 {
 	const uint32_t k = i - DIP_NODES;
-	float *node, most;
+	struct interp_seg *s;
+	float most;
 	double v;
 
 	pass_note_dip(w, i);
-	v = i > DIP_NODES ? pass_dip_mm_s(w, k) : 0;
-	if (!(v > 0))
+	if (i <= DIP_NODES)
 		return;
-	node = &w->segs[k - 1].node_mm_s;
+	s = &w->segs[k - 1];
+	/* One that its segments do not reach slows nothing down. */
+	if (s->node_mm_s >= pass_least(s->feed_max_mm_s, s[1].feed_max_mm_s))
+		return;
+	v = pass_dip_mm_s(w, k);
 	most = v < INFINITY ? level(w, v) : INFINITY;
-	if (most > *node)
-		*node = most;
+	if (v > 0 && most > s->node_mm_s)
+		s->node_mm_s = most;
 }
 
 /* The node in front of segment @i; @last is the segment before it that
@@ -293,8 +311,11 @@ COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
 			       const struct heading *a, const struct heading *b,
 			       uint32_t n)
 {
-	const double v = near_node_mm_s(w, last, i, a, b, n);
+	double v = near_node_mm_s(w, last, i, a, b, n);
 
+	if (!(w->segs[last].kind == INTERP_LINE &&
+	      w->segs[i].kind == INTERP_LINE))
+		v = smaller(v, pass_curl(w, last, i, a, b));
 	limit_nodes(w, last, i, v);
 	if (a->along != b->along)
 		note_parts(w, last, i);

@@ -67,6 +67,20 @@ static inline bool near_chord_is(const struct chord *c, uint32_t from,
 	return c->from == from && c->to == to && c->h.along == along;
 }
 
+/* The same along the path.  Between nodes that are rounded it goes to and fro,
+ * and is longer than the straight line. */
+COLUMNS_INLINE void near_way(const struct pass *w, uint32_t from, uint32_t to,
+			     struct chord *ret, uint32_t n)
+{
+	const int64_t *a = w->p->nodes + (uint64_t)from * n;
+	const int64_t *b = w->p->nodes + (uint64_t)to * n;
+
+	ret->per_mm = 1 / (w->segs[to].s_mm - w->segs[from].s_mm);
+	for (uint32_t j = 0; j < n; j++)
+		ret->h.rate[j] = (double)(b[j] - a[j]) * w->ways.sub_mm[j] *
+				 ret->per_mm;
+}
+
 /* Not over a place from which the length is in other columns. */
 static inline void near_look(const struct pass *w, uint32_t i, struct around *k)
 {
@@ -97,23 +111,21 @@ COLUMNS_INLINE void near_rates(struct pass *w, uint32_t i,
 	const double per_mm = 1 / w->segs[i].length_mm;
 	const bool beside = (~ways & near_all(n)) != 0;
 	const double along = beside ? pass_along_tol(w, ways) : 0;
-	const double *around;
-	struct chord c;
+	struct chord c = { .h.along = ways };
 
 	near_look(w, i, k);
-	near_chord(w, k->behind, k->ahead, ways, &c, n);
-	around = c.mm > 0 ? c.h.rate : h->rate;
-	if (c.mm > 0 && beside)
+	near_way(w, k->behind, k->ahead, &c, n);
+	if (beside)
 		pass_peaks(w, i, &c);
 	ret->v_mm_s = INFINITY;
 	for (uint32_t j = 0; j < n; j++) {
 		/* So far the length and the axis may be off, if the share is
 		 * that of the ways around. */
 		const double off = ways >> j & 1 ? w->tol[j] : w->tol[j] +
-			pass_off(w, j, along, fabs(around[j]));
-		const double d = fabs(h->rate[j] - around[j]);
+			pass_off(w, j, along, fabs(c.h.rate[j]));
+		const double d = fabs(h->rate[j] - c.h.rate[j]);
 		const double by = fabs(d > off * per_mm ? h->rate[j] :
-							  around[j]);
+							  c.h.rate[j]);
 
 		ret->by[j] = by;
 		if (by * ret->v_mm_s > w->v_mm_s[j])
@@ -157,9 +169,8 @@ COLUMNS_INLINE double near_curve(struct pass *w, uint32_t i, double most,
 
 /*
  * Does pass_turn() certainly allow @v_mm_s?  On most curves of lines it does,
- * and the answer costs less than pass_turn() itself.  Of a turn below 1 the
- * radius of a corner is at least 6.46 * corner_mm / turn; all of a change
- * counts here, and of all axes the one that can do least.
+ * and the answer costs less than pass_turn() itself.  All of a change counts
+ * here, and of all axes the one that can do least.
  */
 COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
 				      uint32_t i, const struct heading *a,
@@ -167,7 +178,7 @@ COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
 				      uint32_t both, uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
-	const double v = v_mm_s, far = 6.4 * w->corner_mm;
+	const double v = v_mm_s;
 	double turn = 0;
 
 	if (s[last].kind != INTERP_LINE || s[i].kind != INTERP_LINE ||
@@ -182,8 +193,8 @@ COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
 		else if (!(fabs(d) * v < 0.99 * w->step_mm_s[j]))
 			return false;
 	}
-	return turn < 1 && v * v * turn < w->a_least_mm_s2 * far &&
-	       v * v * v * turn * turn < w->j_least_mm_s3 * far * far;
+	return turn < 1 && v * v * turn < w->turn_least[0] &&
+	       v * v * v * turn * turn < w->turn_least[1];
 }
 
 /* As pass_node_mm_s(). */
@@ -197,17 +208,23 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 	const bool curves = pass_is_short(w, last) || pass_is_short(w, i);
 	const uint32_t both = a->along & b->along;
 	const bool all = both == near_all(n);
-	double v = INFINITY, turn;
+	double v = INFINITY, fast, turn;
 
 	w->bends = 0;
 	if (!all)
-		w->dip.round_mm_s = w->dip.firm_mm_s = INFINITY;
+		w->dip = (struct dip) {
+			0, { INFINITY, 0 }, { INFINITY, 0 }, INFINITY
+		};
 	if (curves)
 		v = all ? near_curve(w, i, most, n) : 0;
 	if (curves && v < most)
 		v = pass_curve(w, i, both, most);
-	if (all ? near_turns_faster(w, last, i, a, b, v, near_all(n), n) :
-		  near_turns_faster(w, last, i, a, b, v, both, n))
+	if (!curves && last + 1 == i && s[last].kind == INTERP_LINE &&
+	    s[i].kind == INTERP_LINE)
+		v = pass_arch(w, i, both, most);
+	fast = curves ? smaller(v, most) : v;
+	if (all ? near_turns_faster(w, last, i, a, b, fast, near_all(n), n) :
+		  near_turns_faster(w, last, i, a, b, fast, both, n))
 		return v;
 	turn = pass_turn(w, last, i, a, b);
 	w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s, (float)turn);

@@ -13,6 +13,7 @@
 #include "speed/nearby.h"
 
 #include <math.h>
+#include <string.h>
 
 /* of the windows, to see a peak of a share */
 #define PEAK		0
@@ -23,6 +24,14 @@
 /* If all of a turn but this share is more than a rounding, a wider window shows
  * no more. */
 #define CLEAR		0.02
+
+/* A path that is so much longer than its chord goes to and fro.  Lines as short
+ * as their rounding are steps of a staircase, which is not as much. */
+#define CROOKED		1.5
+
+/* An arc between two lines and their node, as far from it as from the middle of
+ * both: it is so often nearer than what they turn by goes in a mm of them. */
+#define BOW_CHORDS	16
 
 /*
  * How the direction changes at a node.  If both lines are short, a rounding of
@@ -103,16 +112,16 @@ COLUMNS_INLINE double corner(const struct pass *w, const struct change *c,
 	return pass_round_mm_s(larger(r, w->corner_mm), acc * sqrt(turn), jerk);
 }
 
-/* The other columns: their speed makes a step. */
-COLUMNS_INLINE double step(const struct pass *w, const struct change *c,
-			   uint32_t both, uint32_t n)
+/* The speed of each of @columns makes a step. */
+COLUMNS_INLINE double step(const struct pass *w, const double *d,
+			   uint32_t columns, uint32_t n)
 {
 	double v = INFINITY;
 
 	for (uint32_t j = 0; j < n; j++) {
-		if (!(both >> j & 1) && c->d[j] * v > w->step_mm_s[j] &&
-		    c->d[j] > 1e-9)
-			v = w->step_mm_s[j] / c->d[j];
+		if (columns >> j & 1 && d[j] * v > w->step_mm_s[j] &&
+		    d[j] > 1e-9)
+			v = w->step_mm_s[j] / d[j];
 	}
 	return v;
 }
@@ -223,14 +232,12 @@ COLUMNS_INLINE bool may_bend(const struct pass *w, const struct look *l,
 }
 
 /* The window that shows the slowest. */
-static void note_round(struct pass *w, const struct look *l)
+static void note_shown(const struct look *l, double mm_s, struct shown *ret)
 {
-	struct dip *d = &w->dip;
-
-	if (!(l->round_mm_s < (double)d->round_mm_s))
-		return;
-	d->round_mm_s = (float)l->round_mm_s;
-	d->near_mm = (float)(DIP_NEAR * l->window->mm);
+	if (mm_s < (double)ret->mm_s)
+		*ret = (struct shown) {
+			(float)mm_s, (float)(DIP_NEAR * l->window->mm)
+		};
 }
 
 /*
@@ -244,11 +251,11 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 			    uint32_t along, uint32_t n)
 {
 	const bool beside = (~along & ((1u << n) - 1)) != 0;
-	double per_mm[INTERP_NAXES], firm = INFINITY, enough = INFINITY;
+	double per_mm[INTERP_NAXES], enough = INFINITY;
 	struct look l = { .node = i, .along = along, .most_mm_s = most };
 	bool clear = false;
 
-	w->dip.round_mm_s = INFINITY;
+	w->dip.round.mm_s = w->dip.bow.mm_s = INFINITY;
 	for (uint32_t j = 0; j < n; j++)
 		per_mm[j] = INFINITY;
 	for (int at = 0; at < PASS_WINDOWS && !clear; at++) {
@@ -283,8 +290,9 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 		bow_beside_mm_s(w, &l, d, along, n);
 		if (isinf(enough)) {
 			fast = bow_along_mm_s(w, &l.bow, d, along, n);
-			firm = smaller(firm, smaller(fast, l.firm_mm_s));
-			note_round(w, &l);
+			note_shown(&l, l.round_mm_s, &w->dip.round);
+			note_shown(&l, smaller(fast, l.firm_mm_s),
+				   &w->dip.bow);
 		}
 		change_of(w, at_most, &c, along, n);
 		for (uint32_t j = 0; j < n; j++)
@@ -292,9 +300,8 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 		if (enough < INFINITY && !may_bend(w, &l, per_mm, along, n))
 			break;
 	}
-	firm = smaller(firm, enough);
-	w->dip.firm_mm_s = (float)firm;
-	return smaller(firm, (double)w->dip.round_mm_s);
+	note_shown(&l, enough, &w->dip.bow);
+	return (double)pass_least(w->dip.bow.mm_s, w->dip.round.mm_s);
 }
 
 double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s)
@@ -316,6 +323,104 @@ static void look_near(struct pass *w, uint32_t i)
 		k->ahead--;
 }
 
+/* Is the path to here, or on from here, longer than a chord of it, by more than
+ * roundings make it? */
+static bool is_crooked(const struct pass *w, const struct around *k)
+{
+	for (int at = 0; at < 2; at++) {
+		const struct chord *c = &k->chord[at];
+		const double way = w->segs[c->to].s_mm -
+				   w->segs[c->from].s_mm;
+
+		if (way > CROOKED * c->mm)
+			return true;
+	}
+	return false;
+}
+
+/* By a corner, and by the steps of all columns. */
+COLUMNS_INLINE double around(struct pass *w, struct change *c, uint32_t both,
+			     uint32_t n)
+{
+	change_of(w, heard, c, both, n);
+	return smaller(corner(w, c, both, n), step(w, c->d, near_all(n), n));
+}
+
+/* How much column rates change from segment @i to the next one; by nothing if
+ * they are no lines of this run. */
+static void turn_behind(const struct pass *w, uint32_t i,
+			double ret[INTERP_NAXES])
+{
+	struct heading h[2];
+	int64_t sub[INTERP_NAXES];
+
+	memset(ret, 0, w->n * sizeof(*ret));
+	if (i < w->run || i + 1 >= w->run_end ||
+	    w->segs[i].kind != INTERP_LINE ||
+	    w->segs[i + 1].kind != INTERP_LINE)
+		return;
+	for (uint32_t k = 0; k < 2; k++)
+		heading_straight(&w->ways, i + k, &h[k], sub, w->n);
+	for (uint32_t j = 0; j < w->n; j++)
+		ret[j] = h[1].rate[j] - h[0].rate[j];
+}
+
+/* What nodes turn by one behind the other adds up over the lines between. */
+double pass_arch(const struct pass *w, uint32_t i, uint32_t along,
+		 double most_mm_s)
+{
+	double here[INTERP_NAXES], before[INTERP_NAXES], behind[INTERP_NAXES];
+	const double mm = (w->segs[i - 1].length_mm +
+			   w->segs[i].length_mm) / 2;
+	double v = most_mm_s;
+	bool turns = false;
+
+	turn_behind(w, i - 1, here);
+	for (uint32_t j = 0; j < w->n; j++)
+		turns = turns || (along >> j & 1 &&
+				  v * v * fabs(here[j]) > w->a_mm_s2[j] * mm);
+	if (!turns)
+		return INFINITY;
+	turn_behind(w, i - 2, before);
+	turn_behind(w, i, behind);
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double most = larger(before[j] * here[j],
+					   behind[j] * here[j]);
+		const double by = smaller(fabs(here[j]),
+					  most / fabs(here[j]));
+
+		if (along >> j & 1 && most > 0 &&
+		    v * v * by > w->a_mm_s2[j] * mm)
+			v = sqrt(w->a_mm_s2[j] * mm / by);
+	}
+	return v < most_mm_s ? v : INFINITY;
+}
+
+/*
+ * What columns that make the length step by, if the nodes before and behind
+ * turn the same way: then an arc between both lines and the node is as near to
+ * them as a share of what a corner may be, and no axis notices the node but for
+ * what it turns by more than they do, within the other share.
+ */
+static void apart(const struct pass *w, uint32_t i, double d[INTERP_NAXES])
+{
+	const double mm = smaller(w->segs[i - 1].length_mm,
+				  w->segs[i].length_mm);
+	double before[INTERP_NAXES], here[INTERP_NAXES], behind[INTERP_NAXES];
+
+	turn_behind(w, i - 2, before);
+	turn_behind(w, i - 1, here);
+	turn_behind(w, i, behind);
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double around = (before[j] + behind[j]) / 2;
+		const double left = 1 - fabs(around) * mm /
+					(BOW_CHORDS * w->corner_mm);
+
+		if (fabs(here[j] - around) < left * d[j])
+			d[j] = fabs(here[j] - around) / left;
+	}
+}
+
 /* The turn of a node between lines; between longer chords, if the lines are
  * short. */
 COLUMNS_INLINE double turn(struct pass *w, uint32_t last, uint32_t i,
@@ -323,25 +428,42 @@ COLUMNS_INLINE double turn(struct pass *w, uint32_t last, uint32_t i,
 			   uint32_t both, uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
-	struct change c = { .a = a, .b = b };
-	struct bow k = { .per_mm = 0 };
+	const double own_per_mm = 1 / s[last].length_mm + 1 / s[i].length_mm;
+	const bool lines = s[last].kind == INTERP_LINE &&
+			   s[i].kind == INTERP_LINE;
+	struct change c = { .a = a, .b = b, .per_mm = own_per_mm };
+	bool near = lines && smaller(s[last].length_mm, s[i].length_mm) <
+				     w->near.mm;
+	double v, along;
+	struct bow k;
 
-	if (s[last].kind == INTERP_LINE && s[i].kind == INTERP_LINE &&
-	    smaller(s[last].length_mm, s[i].length_mm) < w->near.mm) {
+	if (near) {
 		look_near(w, i);
-		if (a->along != b->along ||
-		    !bow_of(w, i, &w->near, both, &k, n))
-			k.per_mm = 0;
+		near = a->along == b->along &&
+		       bow_of(w, i, &w->near, both, &k, n);
 	}
-	if (k.per_mm > 0) {
+	if (near) {
 		c.a = k.a;
 		c.b = k.b;
 		c.per_mm = k.per_mm;
-	} else {
-		c.per_mm = 1 / s[last].length_mm + 1 / s[i].length_mm;
 	}
 	change_of(w, heard, &c, both, n);
-	return smaller(corner(w, &c, both, n), step(w, &c, both, n));
+	v = smaller(corner(w, &c, both, n),
+		    step(w, c.d, ~both & near_all(n), n));
+	along = step(w, c.d, both, n);
+	if (along < v && !near && lines && last + 1 == i) {
+		apart(w, i, c.d);
+		along = step(w, c.d, both, n);
+	}
+	v = smaller(v, along);
+	/* Tiny lines may go to and fro within the chords. */
+	if (near && (both != near_all(n) || is_crooked(w, &w->near))) {
+		c.a = a;
+		c.b = b;
+		c.per_mm = own_per_mm;
+		v = smaller(v, around(w, &c, both, n));
+	}
+	return v;
 }
 
 double pass_turn(struct pass *w, uint32_t last, uint32_t i,
@@ -374,9 +496,8 @@ double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
 	c.b = b;
 	both = c.a->along & b->along;
 	c.per_mm = 1 / s[m].length_mm + 1 / s[i].length_mm;
-	change_of(w, heard, &c, both, w->n);
 	*first = m;
-	return smaller(corner(w, &c, both, w->n), step(w, &c, both, w->n));
+	return around(w, &c, both, w->n);
 }
 
 /* A peak of the share of an axis beside the path: over the shorter way @c it is

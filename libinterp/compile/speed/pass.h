@@ -100,14 +100,19 @@ struct bent_nodes {
 	size_t n, room;
 };
 
+/* A limit of a node, and how far around the node it shows. */
+struct shown {
+	float mm_s, near_mm;
+};
+
 /*
  * What limits a node: in how the bend of an axis beside the path changes, a
  * rounding shows most (dip.c).
  */
 struct dip {
 	uint32_t node;
-	float round_mm_s, firm_mm_s;	/* by that; by all else */
-	float near_mm;			/* around it */
+	struct shown round, bow;	/* by that; by all else of the curve */
+	float firm_mm_s;		/* by its own turn */
 };
 
 /* Nodes to each side of one, and how much of a window. */
@@ -139,8 +144,9 @@ struct pass {
 	double v_mm_s[INTERP_NAXES], a_mm_s2[INTERP_NAXES];
 	double j_mm_s3[INTERP_NAXES];
 	double step_mm_s[INTERP_NAXES];	/* at a node */
+	double curl_mm_s2[INTERP_NAXES]; /* step of the acceleration there */
 	struct levels v_levels, a_levels, j_levels;
-	double a_least_mm_s2, j_least_mm_s3;
+	double turn_least[2];		/* near_turns_faster() */
 	double a_linear_mm_s2;		/* the least of X Y Z */
 	double a_own_mm_s2[2];		/* of the segments before and behind the
 					 * node, as if nothing bent */
@@ -149,8 +155,8 @@ struct pass {
 	struct bent bent[INTERP_NAXES];
 	struct bent_nodes bent_nodes;
 	struct dip dip, dips[DIP_RING];	/* at the node, and of the last ones */
-	uint32_t tol_of;		/* columns whose largest tol was asked
-					 * for last */
+	uint32_t tol_of;		/* columns whose tol was asked for
+					 * last */
 	double tol_most;
 	struct pass_soft soft;		/* known after the last segment */
 	bool parts;			/* the length passes to other axes */
@@ -186,7 +192,8 @@ static inline float pass_least(float a, float b)
 	return a < b ? a : b;
 }
 
-/** pass_along_tol() - the rounding of the path: the largest of @columns. */
+/** pass_along_tol() - the rounding of the path: that of all @columns may go one
+ *  way. */
 static inline double pass_along_tol(struct pass *w, uint32_t columns)
 {
 	if (columns == w->tol_of)
@@ -195,7 +202,8 @@ static inline double pass_along_tol(struct pass *w, uint32_t columns)
 	w->tol_most = 0;
 	for (uint32_t j = 0; j < w->n; j++)
 		if (columns >> j & 1)
-			w->tol_most = larger(w->tol_most, w->tol[j]);
+			w->tol_most += w->tol[j] * w->tol[j];
+	w->tol_most = sqrt(w->tol_most);
 	return w->tol_most;
 }
 
@@ -314,6 +322,16 @@ void pass_beside_corner(struct pass *w);
  * curve of its chords; no more than @most_mm_s is asked for.
  */
 double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s);
+
+/** pass_curl() - the greatest speed over the same node by how the bend of arcs
+ *  changes there. */
+double pass_curl(const struct pass *w, uint32_t last, uint32_t i,
+		 const struct heading *a, const struct heading *b);
+
+/** pass_arch() - the greatest speed over the node in front of segment @i, if it
+ *  is one of several between long lines that turn the same way. */
+double pass_arch(const struct pass *w, uint32_t i, uint32_t along,
+		 double most_mm_s);
 
 /** pass_turn() - the greatest speed over the same node by its own turn. */
 double pass_turn(struct pass *w, uint32_t last, uint32_t i,

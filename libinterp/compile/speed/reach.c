@@ -44,8 +44,9 @@ static float from(const struct pass *w, uint32_t k, float v2, float other)
 					      (double)s->a_mm_s2));
 }
 
-/* Of every node the square of the speed that can be come to.  So far segments
- * have what their axes can do.  NULL: no memory. */
+/* Of every node the square of the speed that can be come to, from where the
+ * program begins and to its end, forward and back.  So far segments have what
+ * their axes can do.  NULL: no memory. */
 static float *reach(const struct pass *w)
 {
 	float *v2 = malloc((w->end + 1) * sizeof(*v2));
@@ -53,7 +54,8 @@ static float *reach(const struct pass *w)
 	if (!v2)
 		return NULL;
 	for (uint32_t k = 0; k <= w->end; k++) {
-		const double v = over_mm_s(w, k);
+		const bool stands = k == 0 || k + 1 >= w->end;
+		const double v = stands ? 0 : over_mm_s(w, k);
 
 		v2[k] = (float)(v * v);
 		if (k > 0)

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Promise of dense code: three decimals take as long as six, or as long lines.
+
+Random smooth curves, beside which rotary axes turn evenly and unevenly, on
+machines whose axes differ.  The seeds are fixed and the time is the machine's,
+so every run compares the same numbers.
+"""
+import math
+import random
+import re
+
+from edmsim import ROOT, report
+
+PROGRAMS = 80
+DENSE_MM = 0.02, 0.005
+LONG_MM = 0.2
+MM = 20
+
+# Time of dense lines with three decimals, as a share of the longer one of two:
+# with six; and in long lines, of which no axis follows the curve.
+GOAL = 1.005
+MOST = 1.1
+OVER_GOAL = 12          # of all programs
+
+
+def curve(rng):
+    """Places of X Y Z by the way s."""
+    r, k = rng.choice([2, 5, 12]), rng.uniform(0.05, 0.8)
+    turn = 1 / (r * math.hypot(1, k / r))
+    return rng.choice([
+        lambda s: {"X": 0.8 * s, "Z": -0.6 * s},
+        lambda s: {"X": r * math.sin(s / r), "Y": r * math.cos(s / r)},
+        lambda s: {"X": r * math.sin(turn * s), "Y": r * math.cos(turn * s),
+                   "Z": -k * turn * s},
+        lambda s: {"X": s, "Y": r / 4 * math.sin(k * s)},
+    ])
+
+
+def rotary(rng):
+    """Degrees by the way s."""
+    size, wave = 10 ** rng.uniform(-0.5, 1.3), 10 ** rng.uniform(-1, 0.1)
+    even, begin = rng.uniform(-5, 5), rng.uniform(0, 6)
+    return rng.choice([
+        lambda s: even * s,
+        lambda s: size * math.sin(wave * s + begin),
+        lambda s: size * math.sin(wave * s + begin) + even * s,
+        lambda s: size / (1 + math.exp((MM / 2 - s) * wave)),
+    ])
+
+
+def limits(rng, axis):
+    v = (50, 80, 120) if axis in "XYZ" else (30, 60, 120)
+    return (rng.choice(v), rng.choice([500, 1000, 2000]),
+            rng.choice([10000, 20000, 50000]))
+
+
+def machine(folder, axes):
+    """That has these axes, each with v, a and j."""
+    text = (ROOT / "examples/machine.ini").read_text()
+    for axis, (v, a, j) in axes.items():
+        text = re.sub(rf"(?m)^\[axis\.{axis}\]\n(?:\S.*\n)+",
+                      f"[axis.{axis}]\nv_max_mm_s = {v}\n"
+                      f"a_max_mm_s2 = {a}\nj_max_mm_s3 = {j}\n", text)
+    (folder / "m.ini").write_text(text)
+    return folder / "m.ini"
+
+
+def written(at, mm, decimals, way_mm=MM):
+    lines, n = ["G21 G90 F6000"], round(way_mm / mm)
+    for i in range(n + 1):
+        words = at(way_mm * i / n)
+        lines.append(f"G{i > 0:d} " + " ".join(
+            f"{a}{v - at(0)[a]:.{decimals}f}" for a, v in words.items()))
+    return "\n".join(lines + ["M2", ""])
+
+
+def dry_s(of, text):
+    return report("--machine", of, "--dry-run", "--period-us", "100",
+                  text=text)["virtual_s"]
+
+
+def share(seed, folder):
+    rng = random.Random(seed)
+    way = curve(rng)
+    beside = {a: rotary(rng) for a in rng.sample("ABC", rng.choice([0, 1, 1,
+                                                                    2]))}
+    of = machine(folder, {axis: limits(rng, axis) for axis in "XYZCAB"})
+
+    def seconds(mm, decimals):
+        return dry_s(of, written(
+            lambda s: {**way(s), **{a: f(s) for a, f in beside.items()}},
+            mm, decimals))
+
+    long = seconds(LONG_MM, 6)
+    return max(seconds(mm, 3) / max(seconds(mm, 6), long) for mm in DENSE_MM)
+
+
+def test_three_decimals_of_random_dense_code_cost_no_time(tmp_path):
+    shares = {seed: share(seed, tmp_path) for seed in range(PROGRAMS)}
+    over = {s: round(x, 4) for s, x in shares.items() if x > GOAL}
+    assert max(shares.values()) <= MOST, over
+    assert len(over) <= OVER_GOAL, over
+
+
+def test_a_circle_of_axes_that_differ_is_one_move(tmp_path):
+    """What its lines allow changes more often than a cycle looks ahead."""
+    of = machine(tmp_path, {"X": (120, 2000, 10000), "Y": (120, 500, 50000)})
+    dense, long = (dry_s(of, written(
+        lambda s: {"X": 2 * math.sin(s / 2), "Y": 2 * math.cos(s / 2)},
+        mm, 6, 40)) for mm in (DENSE_MM[0], LONG_MM))
+    assert dense <= GOAL * long
