@@ -437,9 +437,9 @@ check:
 	@tests/stage check panel
 	@$(MAKE) --no-print-directory panel
 	@tests/stage check tests
-	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
-	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q -n $(PYTEST_SIDE) \
-		--dist loadfile --no-loadscope-reorder \
+	@EDM_BUILD=$(B) EDM_SEED=1 tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
+	@EDM_BUILD=$(B) EDM_SEED=1 tests/netns .venv/bin/pytest -q \
+		-n $(PYTEST_SIDE) --dist loadfile --no-loadscope-reorder \
 		$(VM_TESTS) tests/system tests/sim $(PANEL_TESTS:%=--ignore %)
 
 # Processes of pytest: a whole file belongs to one of them, and each has a network of

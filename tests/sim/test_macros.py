@@ -4,24 +4,21 @@ against the same program written out line by line.
 """
 import math
 import re
-import shutil
 import subprocess
 
 import pytest
 from edmsim import PROGRAM, ROOT, done, run, seeded
+from rs274 import canonical_calls, peer
 
-RS274 = shutil.which("rs274")
 MACROS = ROOT / "tests/data/macros"
-peer = pytest.mark.skipif(
-    not RS274, reason="no rs274 to compare with: apt install linuxcnc-uspace")
 
 
-def theirs(path):
+def theirs(path, tmp_path):
     """Ends of LinuxCNC's motions, X Y Z A B C."""
-    out = subprocess.run([RS274, "-g", str(path)], capture_output=True,
-                         text=True, timeout=100).stdout
+    copy = tmp_path / "theirs.ngc"
+    copy.write_bytes(path.read_bytes())
     return [tuple(float(n) for n in m.split(", ")) for m in re.findall(
-        r"STRAIGHT_(?:TRAVERSE|FEED)\((.*?)\)", out)]
+        r"STRAIGHT_(?:TRAVERSE|FEED)\((.*?)\)", canonical_calls(copy))]
 
 
 def ours(path, dialect):
@@ -50,8 +47,8 @@ def moved(ends):
     return ret
 
 
-def assert_same(path):
-    a, b = moved(ours(path, "linuxcnc")), moved(theirs(path))
+def assert_same(path, tmp_path):
+    a, b = moved(ours(path, "linuxcnc")), moved(theirs(path, tmp_path))
     assert len(a) == len(b) and a, (len(a), len(b))
     for mine, other in zip(a, b):
         assert all(math.isclose(m, o, abs_tol=1.01e-3)
@@ -60,8 +57,8 @@ def assert_same(path):
 
 @peer
 @pytest.mark.parametrize("name", ["linuxcnc.ngc", "cavities.ngc"])
-def test_o_words_end_where_linuxcnc_ends(name):
-    assert_same(MACROS / name)
+def test_o_words_end_where_linuxcnc_ends(name, tmp_path):
+    assert_same(MACROS / name, tmp_path)
 
 
 def expression(rnd, depth):
@@ -93,10 +90,26 @@ def test_random_expressions_come_to_what_linuxcnc_says(tmp_path):
         # values of X in a row may be equal for one of the two alone, who
         # writes fewer decimals.
         lines.append(f"G0 X[50 * sin[{expression(rnd, 3)}]] Y{i % 2 + 1}")
-        lines.append(f"#{rnd.choice([1, 2])} = [5 * cos[{expression(rnd, 2)}]]")
+        # Plus a number that is far from a whole one: 7 MOD [1 + 3e-16] and 7 MOD 1
+        # are not alike, and who writes cos[90] as 6e-17 would be told apart.
+        lines.append(f"#{rnd.choice([1, 2])} = "
+                     f"[5 * cos[{expression(rnd, 2)}] + 0.1371]")
     path = tmp_path / "e.ngc"
     path.write_text("\n".join(lines) + "\nM2\n")
-    assert_same(path)
+    assert_same(path, tmp_path)
+
+
+def test_a_whole_number_by_rule_is_whole(tmp_path):
+    """Though pi and a 180th of it are rounded in a computer."""
+    whole = {"fix[2 * sin[30]]": 1, "fix[2 * cos[60]]": 1, "fup[2 * sin[150]]": 1,
+             "fix[tan[45]]": 1, "fup[cos[90]]": 0, "fup[sin[-180]]": 0,
+             "fix[sin[360000000]]": 0, "fix[asin[0.5]]": 30, "fup[acos[0.5]]": 60,
+             "fix[atan[1]/[1]]": 45, "fup[atan[sin[180]]/[-1]]": 180,
+             "7 mod [abs[5 * cos[90]] + 1]": 0}
+    lines = [f"G0 X[{e}] Y{i + 1}" for i, e in enumerate(whole)]
+    path = tmp_path / "e.ngc"
+    path.write_text("\n".join(["G21 G90"] + lines) + "\nM2\n")
+    assert [e[0] for e in ours(path, "linuxcnc")] == list(whole.values())
 
 
 @peer
@@ -109,7 +122,7 @@ def test_what_is_nearly_equal_is_equal_as_in_linuxcnc(tmp_path):
             lines.append(f"G0 X[2 + [[3 + {off}] {word} 3]] Y{i + 9}")
     path = tmp_path / "e.ngc"
     path.write_text("\n".join(lines) + "\nM2\n")
-    assert_same(path)
+    assert_same(path, tmp_path)
 
 
 def written_out(text, tmp_path):

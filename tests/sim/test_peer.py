@@ -9,13 +9,12 @@ units.  edmsim's ends are read from the pulses of a machine whose pulse is
 """
 import math
 import re
-import shutil
 import subprocess
 
 import pytest
 from edmsim import PROGRAM, seeded
+from rs274 import canonical_calls, peer
 
-RS274 = shutil.which("rs274")
 PROGRAMS = 12
 SEGMENTS = 60
 GRID_MM = 0.0254
@@ -24,8 +23,7 @@ REACH = 25			# grid steps
 TOLERANCE_MM = 1e-4
 G54 = 3, -2, 5			# grid steps
 
-pytestmark = pytest.mark.skipif(
-    not RS274, reason="no rs274 to compare with: apt install linuxcnc-uspace")
+pytestmark = peer
 
 PLANES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}
 CENTRES = "IJK"
@@ -123,15 +121,14 @@ CALL = re.compile(r"N\S+ +([A-Z0-9_]+)\((.*)\)")
 
 
 def ends_of_rs274(tmp_path, text):
-    (tmp_path / "job.ngc").write_text(text)
+    job = tmp_path / "job.ngc"
+    job.write_text(text)
     (tmp_path / "rs274.var").write_text(parameters())
-    r = subprocess.run([RS274, "-v", "rs274.var", "-g", "job.ngc"],
-                       cwd=tmp_path, capture_output=True, text=True,
-                       timeout=60)
-    assert "_FEED(" in r.stdout, r.stderr
+    out = canonical_calls(job, "-v", "rs274.var")
+    assert "_FEED(" in out, out
     unit, plane, ends = 1.0, 17, []
     offset = {"SET_G5X_OFFSET": [0] * 3, "SET_G92_OFFSET": [0] * 3}
-    for call, args in CALL.findall(r.stdout):
+    for call, args in CALL.findall(out):
         args = [a.strip() for a in args.split(",")]
         if call == "USE_LENGTH_UNITS":
             unit = 25.4 if "INCHES" in args[0] else 1.0

@@ -8,8 +8,6 @@
 #include "code/macro.h"
 #include "code/number.h"
 
-#include "interp/angle.h"
-
 #include <errno.h>
 #include <math.h>
 
@@ -203,11 +201,29 @@ static double fup(double v)
 	return v < 0 ? floor(v) : ceil(v);
 }
 
-static double sin_deg(double v) { return sin(v * ANGLE_DEGREE); }
-static double cos_deg(double v) { return cos(v * ANGLE_DEGREE); }
-static double tan_deg(double v) { return tan(v * ANGLE_DEGREE); }
-static double asin_deg(double v) { return asin(v) / ANGLE_DEGREE; }
-static double acos_deg(double v) { return acos(v) / ANGLE_DEGREE; }
+/*
+ * FIX, FUP and ROUND of a value that is a whole number by rule, as 2 SIN[30],
+ * must not see the rounding of pi: so right angles are taken off first, which
+ * is exact, and the rest is computed in long double, as LinuxCNC does.
+ */
+#define DEGREE_LONG	(3.14159265358979323846264338327950288L / 180)
+
+/* 0.0 is added because -0 would turn ATAN[SIN[180]]/[-1] to -180. */
+static double sin_quarters(double v, int quarters)
+{
+	int q;
+	const long double rest = remquo(v, 90, &q) * DEGREE_LONG;
+	const int turn = (q + quarters) & 3;
+	const long double c = turn & 1 ? cosl(rest) : sinl(rest);
+
+	return (double)(turn & 2 ? -c : c) + 0.0;
+}
+
+static double sin_deg(double v) { return sin_quarters(v, 0); }
+static double cos_deg(double v) { return sin_quarters(v, 1); }
+static double tan_deg(double v) { return sin_deg(v) / cos_deg(v); }
+static double asin_deg(double v) { return (double)(asinl(v) / DEGREE_LONG); }
+static double acos_deg(double v) { return (double)(acosl(v) / DEGREE_LONG); }
 
 /* In a word ROUND may keep some decimals: macro.c */
 static double rounded(const struct macro_line *l, double (*f)(double), double v)
@@ -253,7 +269,7 @@ static int atangent(struct macro_line *l, double *ret)
 		err = macro_bracket(l, &x);
 	}
 	if (!err)
-		*ret = atan2(number(y), number(x)) / ANGLE_DEGREE;
+		*ret = (double)(atan2l(number(y), number(x)) / DEGREE_LONG);
 	return err;
 }
 
