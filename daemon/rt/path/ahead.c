@@ -16,6 +16,7 @@
 #include "path/ahead.h"
 #include "path/laws.h"
 #include "path/lookahead.h"
+#include "path/slow.h"
 #include "path/walk.h"
 #include "path/place.h"
 
@@ -136,6 +137,13 @@ static void look_on(const struct cycle *c, const struct ahead_move *w,
 	}
 }
 
+/* The nearer one of the goal and the stand. */
+static double end_mm(const struct ahead_move *w, double stand_mm)
+{
+	return isfinite(stand_mm) && w->toward * (stand_mm - w->goal_mm) < 0 ?
+	       stand_mm : w->goal_mm;
+}
+
 /* From here to where the move ends or has to stand. */
 static struct soft limits_of(const struct cycle *c, const struct ahead_move *w)
 {
@@ -149,8 +157,15 @@ static struct soft limits_of(const struct cycle *c, const struct ahead_move *w)
  * axes allow less. */
 static void go_on_to(struct cycle *c, const struct ahead_move *w)
 {
-	const struct soft s = limits_of(c, w);
+	struct soft s = limits_of(c, w);
 
+	if (isfinite(c->ahead.l.v_max_mm_s)) {
+		s.l = w->l;
+		if (s.next != 0 ||
+		    !slow_limits_at(c, w, end_mm(w, s.stand_mm),
+				    c->ahead.l.v_max_mm_s, &s.l))
+			return;
+	}
 	if (is_softer(&s.l, &c->ahead.l))
 		return;
 	c->ahead.stand_mm = s.stand_mm;
@@ -206,6 +221,10 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 		const struct soft s = limits_of(c, w);
 
 		a->l = s.l;
+		if (s.next == 0)
+			slow_limits(c, w, end_mm(w, s.stand_mm), &a->l);
+		else
+			a->l.v_max_mm_s = INFINITY;
 		a->stand_mm = s.stand_mm;
 		a->next = s.next;
 	} else if (turns) {
@@ -406,7 +425,7 @@ double ahead_distance(struct cycle *c, const struct ahead_move *w)
 	double v, most, step;
 
 	begin(c, w);
-	v = speed_here(c, w, &most);
+	v = fmin(speed_here(c, w, &most), c->ahead.l.v_max_mm_s);
 	/* First to a stand: what lies between here and there is not seen. */
 	if (c->ahead.turns)
 		v = 0;

@@ -15,6 +15,15 @@ static bool ends(const struct interp_build *b)
 	return s[b->segs.n - 1].kind == INTERP_END;
 }
 
+/* Axes bend beside X Y Z only if there are others. */
+static bool may_bend(const struct interp_build *b)
+{
+	for (uint32_t j = 0; j < b->naxes; j++)
+		if (b->naxes > 1 && b->column[j] > INTERP_Z)
+			return true;
+	return false;
+}
+
 static struct interp_program_head layout(const struct interp_build *b)
 {
 	const size_t nsegs = b->segs.n + !ends(b);
@@ -32,6 +41,7 @@ static struct interp_program_head layout(const struct interp_build *b)
 		.npieces = b->pieces.n,
 		.nstops = b->stops.n,
 		.nnumbers = b->numbers.n,
+		.nbends = may_bend(b) ? (nsegs - 1) / INTERP_BENDS_SEGS + 1 : 0,
 		.naxes = b->naxes,
 		.strategy = b->o.strategy,
 		.tolerance_milli = b->o.tolerance_milli,
@@ -52,7 +62,8 @@ static struct interp_program_head layout(const struct interp_build *b)
 	h.pieces_at = h.curves_at + b->curves.n * b->curves.size;
 	h.stops_at = h.pieces_at + b->pieces.n * b->pieces.size;
 	h.numbers_at = h.stops_at + b->stops.n * b->stops.size;
-	h.runs_at = h.numbers_at + b->numbers.n * b->numbers.size;
+	h.bends_at = h.numbers_at + b->numbers.n * b->numbers.size;
+	h.runs_at = h.bends_at + h.nbends * sizeof(struct interp_bends);
 	h.bytes = h.runs_at + b->runs.n * b->runs.size;
 	return h;
 }
@@ -171,5 +182,6 @@ void interp_build_write(struct interp_build *b,
 	move_table(base + h.numbers_at, &b->numbers, threads);
 	move_table(base + h.runs_at, &b->runs, threads);
 	if (interp_program_map(&p, block, h.bytes) == 0)
-		build_limits_write(b, &p, segs, threads);
+		build_limits_write(b, &p, segs, (void *)(base + h.bends_at),
+				   threads);
 }

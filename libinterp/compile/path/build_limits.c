@@ -122,13 +122,14 @@ void build_limits_stop(struct interp_build *b)
 }
 
 void build_limits_write(struct interp_build *b, const struct interp_program *p,
-			struct interp_seg *segs, uint32_t threads)
+			struct interp_seg *segs, struct interp_bends *bends,
+			uint32_t threads)
 {
 	const struct interp_limits l = limits_of(b, threads);
 
 	if (b->follow)
-		follow_write(b->follow, p, segs);
+		follow_write(b->follow, p, segs, bends);
 	else
-		interp_limits_write(&l, p, segs);
+		interp_limits_write(&l, p, segs, bends);
 	b->follow = NULL;
 }

@@ -42,12 +42,13 @@ void build_limits_await(struct interp_build *b);
 void build_limits_stop(struct interp_build *b);
 
 /**
- * build_limits_write() - of the whole program @p, into @segs: copies of what
- * build_limits_await() has left in the table.
+ * build_limits_write() - of the whole program @p, into its @bends and into
+ * @segs: copies of what build_limits_await() has left in the table.
  *
  * @threads: what build_threads() has said of all of it
  */
 void build_limits_write(struct interp_build *b, const struct interp_program *p,
-			struct interp_seg *segs, uint32_t threads);
+			struct interp_seg *segs, struct interp_bends *bends,
+			uint32_t threads);
 
 #endif /* PATH_BUILD_LIMITS_H */

@@ -166,10 +166,10 @@ static void forget(struct follow *f)
 }
 
 void follow_write(struct follow *f, const struct interp_program *p,
-		  struct interp_seg *segs)
+		  struct interp_seg *segs, struct interp_bends *bends)
 {
 	pass_move(&f->pass, p, segs);
-	pass_finish(&f->pass);
+	pass_finish(&f->pass, bends);
 	forget(f);
 }
 

@@ -46,7 +46,7 @@ void follow_await(struct follow *f);
  *  for the whole program @p, and free @f.  Its segments @segs are what the
  *  thread made of them. */
 void follow_write(struct follow *f, const struct interp_program *p,
-		  struct interp_seg *segs);
+		  struct interp_seg *segs, struct interp_bends *bends);
 
 /** follow_stop() - end the thread, if that is still there: then the segments
  *  become what they were; and free @f.  NULL is fine. */

@@ -438,13 +438,14 @@ void pass_move(struct pass *w, const struct interp_program *p,
 	w->segs = segs;
 }
 
-void pass_finish(struct pass *w)
+void pass_finish(struct pass *w, struct interp_bends *bends)
 {
 	w->end = w->p->head->nsegs - 1;
 	w->segs[0].node_mm_s = INFINITY;
 	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
 	pass_walk(w, w->end, w->end + 1);
 	pass_beside_corner(w);
+	pass_bends(w, bends);
 	pass_soften(w);
 	pass_stretches(w);
 	pass_hops(w);
@@ -452,10 +453,10 @@ void pass_finish(struct pass *w)
 
 void interp_limits_write(const struct interp_limits *l,
 			 const struct interp_program *p,
-			 struct interp_seg *segs)
+			 struct interp_seg *segs, struct interp_bends *bends)
 {
 	struct pass w;
 
 	pass_begin(&w, l, p, segs);
-	pass_finish(&w);
+	pass_finish(&w, bends);
 }

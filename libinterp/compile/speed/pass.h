@@ -98,6 +98,7 @@ struct bent_node {
 struct bent_nodes {
 	struct bent_node *at;
 	size_t n, room;
+	bool lost;			/* there was no memory for one */
 };
 
 /* A limit of a node, and how far around the node it shows. */
@@ -245,8 +246,8 @@ void pass_move(struct pass *w, const struct interp_program *p,
 	       struct interp_seg *segs);
 
 /** pass_finish() - all is known: limit the rest, and find what needs the
- *  end. */
-void pass_finish(struct pass *w);
+ *  end; fill @bends. */
+void pass_finish(struct pass *w, struct interp_bends *bends);
 
 /** pass_chord() - find the straight line from node @from to node @to.  Its
  *  length is that of the columns @along. */
@@ -282,6 +283,10 @@ void pass_bent_node(struct pass *w, const struct bent_node *b);
 
 /** pass_forget() - free what pass_soften() has not freed. */
 void pass_forget(struct pass *w);
+
+/** pass_bends() - fill the program's @bends, from bends that are noted and from
+ *  segments that pass_soften() has not softened. */
+void pass_bends(const struct pass *w, struct interp_bends *bends);
 
 /** pass_soften() - the speeds of all nodes are known. */
 void pass_soften(struct pass *w);

@@ -93,10 +93,12 @@ static bool make_room(struct bent_nodes *k)
 /* Without memory, its speed is what its segments allow. */
 void pass_bent_node(struct pass *w, const struct bent_node *b)
 {
-	if (make_room(&w->bent_nodes))
+	if (make_room(&w->bent_nodes)) {
 		w->bent_nodes.at[w->bent_nodes.n++] = *b;
-	else
-		soften_by(w, b, over_mm_s(w, b->before));
+		return;
+	}
+	w->bent_nodes.lost = true;
+	soften_by(w, b, over_mm_s(w, b->before));
 }
 
 void pass_forget(struct pass *w)

@@ -80,7 +80,8 @@ int interp_program_map(struct interp_program *p, const void *block,
 	    !table_ok(h, h->curves_at, h->ncurves, sizeof(*p->curves)) ||
 	    !table_ok(h, h->pieces_at, h->npieces, sizeof(*p->pieces)) ||
 	    !table_ok(h, h->stops_at, h->nstops, sizeof(*p->stops)) ||
-	    !table_ok(h, h->numbers_at, h->nnumbers, sizeof(*p->numbers)))
+	    !table_ok(h, h->numbers_at, h->nnumbers, sizeof(*p->numbers)) ||
+	    !table_ok(h, h->bends_at, h->nbends, sizeof(*p->bends)))
 		return -EBADMSG;
 
 	p->head = h;
@@ -96,6 +97,7 @@ int interp_program_map(struct interp_program *p, const void *block,
 	p->pieces = (const void *)(base + h->pieces_at);
 	p->stops = (const void *)(base + h->stops_at);
 	p->numbers = (const void *)(base + h->numbers_at);
+	p->bends = (const void *)(base + h->bends_at);
 	for (uint32_t i = 0; i < h->nconds; i++) {
 		if (!interp_tech_ok(&p->conds[i].tech))
 			return -EBADMSG;

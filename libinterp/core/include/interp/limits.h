@@ -127,11 +127,12 @@ struct interp_limits {
  * interp_limits_write() - fill node_mm_s, feed_max_mm_s, a_mm_s2, j_mm_s3,
  * slower_*, softer_* and INTERP_SEG_STAND of @segs.
  *
- * @segs: the segments of @p, writable.  Any thread, but not for the cycle.
+ * @segs, @bends: the segments of @p, and its bends, which it fills; writable.
+ * Any thread, but not for the cycle.
  */
 void interp_limits_write(const struct interp_limits *l,
 			 const struct interp_program *p,
-			 struct interp_seg *segs);
+			 struct interp_seg *segs, struct interp_bends *bends);
 
 /**
  * interp_limits_into() - how fast segment @i may be entered, going forward:

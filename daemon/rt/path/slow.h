@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * slow.h - a lower ceiling of speed, and more acceleration under it
+ *
+ * Where axes bend beside the path, more acceleration is left at a lower speed
+ * (interp/bends.h).  A move that is too short for its speed gains by that.
+ *
+ * Private to ahead.c and slow.c.  Threads: RT-safe.
+ */
+#ifndef RT_SLOW_H
+#define RT_SLOW_H
+
+#include "path/ahead.h"
+
+/**
+ * slow_limits() - for a move that begins here and stands at @end_mm.
+ *
+ * @l: what holds for all of its way at any speed; changed, if it comes there
+ *     earlier so.  Its v_max_mm_s is then the ceiling.
+ */
+void slow_limits(const struct cycle *c, const struct ahead_move *w,
+		 double end_mm, struct mover_limits *l);
+
+/**
+ * slow_limits_at() - the acceleration and jerk, as far as @end_mm, under a
+ * ceiling that is chosen already.
+ *
+ * @l: what the move may have by itself; softened.
+ *
+ * Return: false if that is not known.
+ */
+bool slow_limits_at(const struct cycle *c, const struct ahead_move *w,
+		    double end_mm, double ceiling_mm_s, struct mover_limits *l);
+
+#endif /* RT_SLOW_H */

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* bends.c - the bends of each run of segments, for moves that are slow there */
+#include "speed/pass.h"
+
+#include "interp/bends.h"
+
+#include <string.h>
+
+/* What a segment allows as if nothing bent. */
+static void note_own(struct interp_bends *b, const struct interp_seg *s)
+{
+	b->a_mm_s2 = pass_least(s->a_mm_s2, b->a_mm_s2);
+	b->j_mm_s3 = pass_least(s->j_mm_s3, b->j_mm_s3);
+}
+
+static struct interp_bends bends_of(const struct pass *w,
+				    const struct bent_node *k)
+{
+	const double a = w->a_mm_s2[k->column], j = w->j_mm_s3[k->column];
+	const struct bent *is = &k->is;
+	struct interp_bends b = INTERP_BENDS_NONE;
+
+	b.by_v2 = (float)(is->bend / a);
+	b.by_v3 = (float)(is->change / j);
+	b.by_va = (float)(3 * is->bend / j);
+	if (is->rate > 0) {
+		b.bent_a_mm_s2 = (float)(a / is->rate);
+		b.bent_j_mm_s3 = (float)(j / is->rate);
+	}
+	return b;
+}
+
+void pass_bends(const struct pass *w, struct interp_bends *bends)
+{
+	const struct bent_nodes *k = &w->bent_nodes;
+	const size_t n = w->p->head->nbends;
+
+	if (k->n == 0 || k->lost) {
+		memset(bends, 0, n * sizeof(*bends));
+		return;
+	}
+	for (size_t i = 0; i < n; i++)
+		bends[i] = INTERP_BENDS_NONE;
+	for (uint32_t i = 0; i < w->p->head->nsegs && n > 0; i++)
+		note_own(&bends[i / INTERP_BENDS_SEGS], &w->segs[i]);
+	for (size_t i = 0; i < k->n && n > 0; i++) {
+		const struct interp_bends b = bends_of(w, &k->at[i]);
+
+		interp_bends_join(&bends[k->at[i].before / INTERP_BENDS_SEGS],
+				  &b);
+		interp_bends_join(&bends[k->at[i].behind / INTERP_BENDS_SEGS],
+				  &b);
+	}
+}
