@@ -109,3 +109,20 @@ def test_a_circle_of_axes_that_differ_is_one_move(tmp_path):
         lambda s: {"X": 2 * math.sin(s / 2), "Y": 2 * math.cos(s / 2)},
         mm, 6, 40)) for mm in (DENSE_MM[0], LONG_MM))
     assert dense <= GOAL * long
+
+
+def test_a_helix_beside_an_axis_that_turns_evenly_costs_nothing(tmp_path):
+    """The axis is the limit, and it goes at its speed all along."""
+    speed, of = 60, machine(tmp_path, {"C": (60, 500, 20000)})
+
+    def at(s):
+        turned = s / 5.2
+        return {"X": 5 * math.sin(turned), "Y": 5 * math.cos(turned),
+                "Z": -0.3 * turned, "C": 6 * s}
+
+    long = dry_s(of, written(at, 0.1, 6, 50))
+    dense = {mm: dry_s(of, written(at, mm, 3, 50))
+             for mm in (0.1, 0.02, 0.01, 0.005)}
+    assert max(dense.values()) <= GOAL * long, (dense, long)
+    # To speed up and to brake takes a tenth of a second each.
+    assert long <= 1.005 * (300 / speed) + 0.2
