@@ -12,6 +12,7 @@ import re
 from edmsim import ROOT, report
 
 PROGRAMS = 80
+CORNERS = 30
 DENSE_MM = 0.02, 0.005
 LONG_MM = 0.2
 MM = 20
@@ -79,6 +80,37 @@ def dry_s(of, text):
                   text=text)["virtual_s"]
 
 
+def corner_text(rng, mm, decimals):
+    """Two lines of 0.5 to 4 mm, between which the way turns by 30 to 180
+    degrees; in lines of @mm, None: whole."""
+    a, turn = rng.uniform(0, 7), rng.choice([-1, 1]) * rng.uniform(0.52, 3.1)
+    x, y, lines = 0, 0, ["G21 G90 F60000"]
+    for angle in a, a + turn:
+        length = rng.uniform(0.5, 4)
+        to_x = round(x + length * math.cos(angle), 3)
+        to_y = round(y + length * math.sin(angle), 3)
+        n = round(length / mm) if mm else 1
+        lines += [f"G1 X{x + (to_x - x) * i / n:.{decimals}f} "
+                  f"Y{y + (to_y - y) * i / n:.{decimals}f}"
+                  for i in range(1, n + 1)]
+        x, y = to_x, to_y
+    return "\n".join(lines + ["M2", ""])
+
+
+def test_a_corner_of_short_lines_is_as_quick_as_of_long_ones(tmp_path):
+    """Only the corner is slow: no node beside it, and not its neighbour in its
+    place, also where lines are rounded to either side of a chord's length."""
+    of = machine(tmp_path, {"X": (50, 500, 20000), "Y": (50, 500, 20000)})
+    over = {}
+    for seed in range(CORNERS):
+        long = dry_s(of, corner_text(random.Random(seed), None, 3))
+        for mm in 0.1, 0.02, 0.01, 0.005:
+            took = dry_s(of, corner_text(random.Random(seed), mm, 3))
+            if took > GOAL * long:
+                over[seed, mm] = round(took / long, 4)
+    assert not over
+
+
 def share(seed, folder):
     rng = random.Random(seed)
     way = curve(rng)
@@ -109,3 +141,20 @@ def test_a_circle_of_axes_that_differ_is_one_move(tmp_path):
         lambda s: {"X": 2 * math.sin(s / 2), "Y": 2 * math.cos(s / 2)},
         mm, 6, 40)) for mm in (DENSE_MM[0], LONG_MM))
     assert dense <= GOAL * long
+
+
+def test_a_helix_beside_an_axis_that_turns_evenly_costs_nothing(tmp_path):
+    """The axis is the limit, and it goes at its speed all along."""
+    speed, of = 60, machine(tmp_path, {"C": (60, 500, 20000)})
+
+    def at(s):
+        turned = s / 5.2
+        return {"X": 5 * math.sin(turned), "Y": 5 * math.cos(turned),
+                "Z": -0.3 * turned, "C": 6 * s}
+
+    long = dry_s(of, written(at, 0.1, 6, 50))
+    dense = {mm: dry_s(of, written(at, mm, 3, 50))
+             for mm in (0.1, 0.02, 0.01, 0.005)}
+    assert max(dense.values()) <= GOAL * long, (dense, long)
+    # To speed up and to brake takes a tenth of a second each.
+    assert long <= 1.005 * (300 / speed) + 0.2

@@ -89,6 +89,31 @@ static void a_slow_motion_is_not_stuck(void **st)
 	}
 }
 
+/* A line of less than half a pulse has no point, but it has an end: it takes
+ * two seconds here. */
+static void a_line_without_a_point_is_not_stuck(void **st)
+{
+	struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 2e-4 };
+	double end[INTERP_NAXES] = { 0 };
+	struct interp_diag d;
+	struct rig r;
+
+	(void)st;
+	k.dry_run = true;
+	end[INTERP_Z] = -4e-4;
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+	end[INTERP_Z] = -3e-3;
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+	rig_load(&r, b, &k);
+	tell(&r, CYCLE_START);
+	steps(&r, OPEN_V, SECONDS(2.5));
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	assert_int_equal(r.c.cursor.index, 2);
+	rig_free(&r);
+}
+
 /* Over a line that its axes pass slowly a hold takes seconds, and less than a
  * pulse. */
 static void a_slow_brake_is_not_stuck(void **st)
@@ -307,6 +332,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_should_move_and_stands_is_stuck),
 		cmocka_unit_test(a_slow_motion_is_not_stuck),
+		cmocka_unit_test(a_line_without_a_point_is_not_stuck),
 		cmocka_unit_test(a_slow_brake_is_not_stuck),
 		cmocka_unit_test(a_soft_start_is_not_stuck),
 		cmocka_unit_test(a_fast_move_after_a_slow_one_is_not_stuck),

@@ -85,15 +85,18 @@ static double planned_mm_s(const struct cycle *c)
 	return v > 0 ? v : INFINITY;
 }
 
-/* In points a second, of what it has to do; 0: on nothing that has points.
- * What brakes goes as slowly as it goes, and comes to an end. */
+/*
+ * In points a second, of what it has to do; 0: on nothing that has a length.  A
+ * line shorter than a pulse may have no point, but it has an end.  What brakes
+ * goes as slowly as it goes, and comes to an end.
+ */
 static double points_s(const struct cycle *c)
 {
 	const struct interp_seg *s =
 		lookahead_toward(c, c->mover.v_mm_s < 0 ? -1 : 1);
 	double v;
 
-	if (!s || s->ticks == 0)
+	if (!s || !(s->length_mm > 0))
 		return 0;
 	if (brakes(c))
 		v = fabs(c->mover.v_mm_s);
@@ -103,7 +106,8 @@ static double points_s(const struct cycle *c)
 		v = fmin((double)s->feed_max_mm_s,
 			 c->state == STATE_HOLD ? c->gap.retract_mm_s :
 						  c->jump.v_max_mm_s);
-	return fmin(v, planned_mm_s(c)) * (double)s->ticks / s->length_mm;
+	return fmin(v, planned_mm_s(c)) * fmax((double)s->ticks, 1) /
+	       s->length_mm;
 }
 
 /* A time after which some points should have come. */

@@ -5,6 +5,10 @@
 /* A node is a corner if those a chord away from it are so much faster. */
 #define CORNER		2
 
+/* The windows of a node beside a corner may show it as little slower than the
+ * corner itself, or as slower: they see a rounding more of it. */
+#define ALIKE		1.25f
+
 /* The next node at least @mm from node @i, forward if @way is 1, back if -1. */
 static uint32_t away(const struct pass *w, uint32_t i, int way, double mm)
 {
@@ -13,6 +17,49 @@ static uint32_t away(const struct pass *w, uint32_t i, int way, double mm)
 	while (k > w->run && k < w->run_end && pass_from_to(w, i, k) < mm)
 		k += (uint32_t)way;
 	return k;
+}
+
+/* The square of what both lines turn by at node @i. */
+static double turn_of(const struct pass *w, uint32_t i)
+{
+	struct headings a, b;
+	double sum = 0;
+
+	heading_of(&w->ways, i - 1, &a);
+	heading_of(&w->ways, i, &b);
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double d = b.first.rate[j] - a.last.rate[j];
+
+		sum += a.last.along >> j & 1 ? d * d : 0;
+	}
+	return sum;
+}
+
+/* Which of the nodes that are about as slow as node @at, and near to it, turns
+ * most by itself? */
+static uint32_t sharpest(const struct pass *w, uint32_t at)
+{
+	const struct interp_seg *s = w->segs;
+	const float v = ALIKE * s[at - 1].node_mm_s;
+	double most = turn_of(w, at);
+	uint32_t best = at;
+
+	for (int way = -1; way <= 1; way += 2) {
+		uint32_t k = at + (uint32_t)way;
+
+		for (; k > w->run && k < w->run_end &&
+		       pass_from_to(w, at, k) < w->near.mm &&
+		       s[k - 1].kind == INTERP_LINE &&
+		       s[k].kind == INTERP_LINE; k += (uint32_t)way) {
+			const double turn = s[k - 1].node_mm_s <= v ?
+					    turn_of(w, k) : 0;
+
+			if (turn > most)
+				best = k;
+			most = larger(most, turn);
+		}
+	}
+	return best;
 }
 
 static bool is_corner(const struct pass *w, uint32_t i)
@@ -29,18 +76,38 @@ static bool is_corner(const struct pass *w, uint32_t i)
 	return true;
 }
 
-/* Between short lines, where no corner goes over tiny ones. */
+/* Between short lines. */
 static bool is_among(const struct pass *w, uint32_t i)
 {
 	const struct interp_seg *s = &w->segs[i];
 
 	return s[-1].kind == INTERP_LINE && s->kind == INTERP_LINE &&
-	       pass_is_short(w, i - 1) && pass_is_short(w, i) &&
-	       pass_is_tiny(w, i - 1) == pass_is_tiny(w, i);
+	       pass_is_short(w, i - 1) && pass_is_short(w, i);
 }
 
-/* If it is faster now. */
-static void raise_node(struct pass *w, uint32_t i)
+/* The speed over node @i, if it is in a corner over tiny lines.  If that is the
+ * corner @at, that node alone is slow. */
+static double over_mm_s(struct pass *w, uint32_t at, uint32_t i)
+{
+	const struct interp_seg *s = w->segs;
+	struct headings behind;
+	uint32_t to = i, first;
+	double v;
+
+	while (s[to].kind < INTERP_BEGIN && pass_is_tiny(w, to) &&
+	       pass_from_to(w, i, to) < w->near.mm)
+		to++;
+	if (s[to].kind >= INTERP_BEGIN || pass_is_tiny(w, to) ||
+	    !pass_is_tiny(w, to - 1))
+		return INFINITY;
+	heading_of(&w->ways, to, &behind);
+	first = to - 1;
+	v = pass_over_mm_s(w, &first, to, &behind.first);
+	return first < i && !(first < at && at <= to) ? v : INFINITY;
+}
+
+/* If it is faster now, beside the corner @at. */
+static void raise_node(struct pass *w, uint32_t at, uint32_t i)
 {
 	struct interp_seg *s = &w->segs[i];
 	struct headings h[2];
@@ -51,7 +118,8 @@ static void raise_node(struct pass *w, uint32_t i)
 		heading_of(&w->ways, i - 1 + k, &h[k]);
 		w->a_own_mm_s2[k] = (double)w->segs[i - 1 + k].a_mm_s2;
 	}
-	v = pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first);
+	v = smaller(over_mm_s(w, at, i),
+		    pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first));
 	most = isinf(v) ? INFINITY : pass_level(w, v);
 	if (most <= s[-1].node_mm_s)
 		return;
@@ -82,12 +150,13 @@ static void look_between(struct pass *w, uint32_t run, uint32_t i,
  */
 void pass_beside_corner(struct pass *w)
 {
-	const uint32_t at = w->slow;
 	struct pass again;
+	uint32_t at = w->slow;
 
 	w->slow = 0;
 	if (at == 0 || !is_corner(w, at))
 		return;
+	at = sharpest(w, at);
 	again = *w;
 	for (int way = -1; way <= 1; way += 2) {
 		const double mm = pass_sees_mm(w);
@@ -100,7 +169,7 @@ void pass_beside_corner(struct pass *w)
 
 			look_between(&again, way > 0 ? at : far, i,
 				     way > 0 ? far : at);
-			raise_node(&again, i);
+			raise_node(&again, at, i);
 			i += (uint32_t)way;
 		}
 	}

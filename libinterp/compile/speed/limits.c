@@ -96,16 +96,25 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 	windows(w);
 }
 
-/* Down to a level. */
-static float down(double most)
+/* Levels: so many bits of a float are left out. */
+#define COARSE	18		/* 1/64 to 1/32 of a speed */
+#define FINE	13		/* 1/2048 to 1/1024 */
+
+static inline float down_to(double most, int out)
 {
 	float v = (float)(most * (1 + SAME));
 	uint32_t bits;
 
 	memcpy(&bits, &v, sizeof(bits));
-	bits &= ~((UINT32_C(1) << 18) - 1);
+	bits &= ~((UINT32_C(1) << out) - 1);
 	memcpy(&v, &bits, sizeof(v));
 	return v * (float)(1 - 2 * SAME);
+}
+
+/* Down to a level. */
+static float down(double most)
+{
+	return down_to(most, COARSE);
 }
 
 /* A speed; that of an axis stays as it is. */
@@ -123,6 +132,39 @@ static float level(const struct pass *w, double v_mm_s)
 float pass_level(const struct pass *w, double v_mm_s)
 {
 	return level(w, v_mm_s);
+}
+
+/* So many limits that are near to each other are a plateau. */
+#define PLATEAU		8
+#define PLATEAU_HIGH	(1 + 1.0 / 32)
+
+/*
+ * An axis that turns evenly beside the path makes a plateau, which is walked
+ * for long.  So it is worth a fine level: the lowest of its limits.  Where one
+ * is lower still, its coarse level stands once.  So a way that becomes slower
+ * and slower has no more levels than it would have without plateaus, and seen
+ * from its other end twice as many.  Single limits far from it, as those of
+ * lines that a rounding made longer, do not end it.
+ */
+static float plateau_level(struct pass *w, double v_mm_s)
+{
+	struct plateau *p = &w->plateau;
+	const double low = (double)p->low_mm_s;
+	const float most = level(w, v_mm_s);
+
+	if (v_mm_s >= low && v_mm_s < PLATEAU_HIGH * low) {
+		p->far = 0;
+		return ++p->near > PLATEAU ? p->low_mm_s :
+					     pass_least(most, p->low_mm_s);
+	}
+	if (v_mm_s < low && PLATEAU_HIGH * v_mm_s >= low)
+		p->far = 0;
+	else if (++p->far <= PLATEAU)
+		return most;
+	else
+		p->near = p->far = 0;
+	p->low_mm_s = down_to(v_mm_s, FINE);
+	return most;
 }
 
 /* What an axis can do stays as it is. */
@@ -251,7 +293,8 @@ COLUMNS_INLINE void limit_seg(struct pass *w, uint32_t i,
 	if (s->ticks >= MANY_POINTS)
 		v = smaller(v, w->points_per_s * s->length_mm /
 				   (double)s->ticks);
-	s->feed_max_mm_s = level(w, v);
+	s->feed_max_mm_s = near_all(n) == near_usual(n) ? level(w, v) :
+							  plateau_level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;
 }

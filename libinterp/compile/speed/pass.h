@@ -121,6 +121,12 @@ struct dip {
 #define DIP_NEAR	0.25
 #define DIP_RING	32
 
+/* Limits of segments of late that are near to each other. */
+struct plateau {
+	float low_mm_s;
+	uint32_t near, far;		/* that many of late */
+};
+
 struct pass {
 	const struct interp_program *p;
 	struct interp_seg *segs;
@@ -147,6 +153,7 @@ struct pass {
 	double step_mm_s[INTERP_NAXES];	/* at a node */
 	double curl_mm_s2[INTERP_NAXES]; /* step of the acceleration there */
 	struct levels v_levels, a_levels, j_levels;
+	struct plateau plateau;
 	double turn_least[2];		/* near_turns_faster() */
 	double a_linear_mm_s2;		/* the least of X Y Z */
 	double a_own_mm_s2[2];		/* of the segments before and behind the
