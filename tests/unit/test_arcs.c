@@ -288,6 +288,46 @@ static void a_steep_helix_keeps_its_axes_in_step(void **st)
 	}
 }
 
+/* From a line 0 0 to 3 1, or from a circle about 0 0 through 3 1. */
+static double plain_deviation_mm(bool circle, double x, double y)
+{
+	const long double r = hypotl(x, y), dot = 3.0L * x + y;
+	const long double t = dot <= 0 ? 0 : dot >= 10 ? 1 : dot / 10;
+
+	return (double)(circle ? fabsl(r - sqrtl(10)) :
+				 hypotl(x - 3 * t, y - t));
+}
+
+static void points_lie_as_far_from_lines_and_circles_as_they_do(void **st)
+{
+	const struct way w = { .s = INTERP_DDA, .x0 = 3000, .y0 = 1000,
+			       .x1 = 3000, .y1 = 1000 };
+	struct made m = make_arc(&w);
+	uint64_t seed = 1;
+
+	(void)st;
+	for (uint32_t i = 0; i < 2; i++) {
+		struct interp_deviation d = { 0 };
+		struct interp_cursor c;
+
+		assert_int_equal(interp_cursor_init(&c, &m.p), 0);
+		assert_int_equal(interp_cursor_seek(&c, i + 1, 0), 0);
+		assert_int_equal(c.seg.kind == INTERP_ARC, i);
+		for (int n = 0; n < 20000; n++) {
+			const int far = n % 2 ? 5000 : 50;
+			double is, shall;
+
+			c.pos[0] = n ? (int)uniform(&seed, -far, far) : 0;
+			c.pos[1] = n % 8 ? (int)uniform(&seed, -far, far) : 0;
+			is = interp_cursor_deviation_mm(&c, &d);
+			shall = plain_deviation_mm(i, c.pos[0] * 0.001,
+						   c.pos[1] * 0.001);
+			assert_true(fabs(is - shall) < 2e-15);
+		}
+	}
+	unmake(&m);
+}
+
 static void a_tolerance_too_narrow_for_an_arc_is_refused(void **st)
 {
 	const double start[INTERP_NAXES] = { 5 };
@@ -393,6 +433,7 @@ int main(void)
 		cmocka_unit_test(circles_in_a_tube_change_axis_as_seldom_as_is_known),
 		cmocka_unit_test(random_programs_with_helices_are_walked_about),
 		cmocka_unit_test(a_steep_helix_keeps_its_axes_in_step),
+		cmocka_unit_test(points_lie_as_far_from_lines_and_circles_as_they_do),
 		cmocka_unit_test(a_tolerance_too_narrow_for_an_arc_is_refused),
 		cmocka_unit_test(a_damaged_block_never_leads_astray),
 	};

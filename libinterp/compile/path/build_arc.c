@@ -241,10 +241,32 @@ static int measure_runs(struct build_arc *p, struct interp_diag *diag)
 	return 0;
 }
 
+static const struct pulse_strategy *strategy(const struct build_arc *p)
+{
+	return pulse_strategy(p->o->strategy);
+}
+
 void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 		    int32_t *runs)
 {
+	struct interp_circle k;
+
+	if (strategy(p)->accumulates) {
+		dda_marks(arc, p->runs.start, runs);
+		return;
+	}
 	circle_plan_runs(arc, &p->runs, runs, arc->nruns);
+	circle_enter(&k, arc, p->runs.start, p->runs.end, false);
+	k.runs = runs;
+	k.nruns = arc->nruns;
+	k.run_first = arc->run_first;
+	circle_marks(&k, runs + arc->nruns);
+}
+
+uint64_t build_arc_kept(const struct build_arc *p)
+{
+	return strategy(p)->accumulates ? p->arc.nruns :
+					  circle_kept(p->arc.nruns);
 }
 
 /* Around a single pulse only comparison finds a way, whatever the strategy
@@ -252,11 +274,6 @@ void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 static bool is_tiny(const int64_t start[2])
 {
 	return start[0] * start[0] + start[1] * start[1] == 1;
-}
-
-static const struct pulse_strategy *strategy(const struct build_arc *p)
-{
-	return pulse_strategy(p->o->strategy);
 }
 
 static bool measure(struct build_arc *p, const int64_t start[2],
@@ -320,11 +337,10 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 		p->straight = fabs(arc->sweep) * arc->r_mm < 4 * pulse;
 		return p->straight ? 0 : refuse_ticks(diag);
 	}
-	if (strategy(p)->runs && !is_tiny(start)) {
-		memcpy(p->runs.start, start, sizeof(start));
-		memcpy(p->runs.end, end, sizeof(end));
+	memcpy(p->runs.start, start, sizeof(start));
+	memcpy(p->runs.end, end, sizeof(end));
+	if (strategy(p)->runs && !is_tiny(start))
 		err = measure_runs(p, diag);
-	}
 	return err < 0 ? err : count_ticks(p, diag);
 }
 

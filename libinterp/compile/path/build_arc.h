@@ -40,7 +40,11 @@ int build_arc_shape(struct build_arc *p, struct interp_diag *diag);
 /** build_arc_plan() - 0, or -EINVAL with @diag's found and wanted. */
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag);
 
-/** build_arc_runs() - write the arc.nruns runs of a planned arc. */
+/** build_arc_kept() - numbers that the program keeps of a planned arc: its runs
+ *  and what a seek begins at. */
+uint64_t build_arc_kept(const struct build_arc *p);
+
+/** build_arc_runs() - write them. */
 void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 		    int32_t *runs);
 

@@ -13,14 +13,16 @@ static int runs_add(struct interp_build *b, const struct build_arc *plan,
 		    struct interp_arc *arc)
 {
 	struct table *t = &b->runs;
+	uint64_t n;
 
 	arc->run_at = (uint32_t)t->n;
 	if (arc->nruns == 0)
 		return 0;
-	if (build_table_room(t, arc->nruns) < 0)
+	n = build_arc_kept(plan);
+	if (build_table_room(t, n) < 0)
 		return -ENOMEM;
 	build_arc_runs(plan, arc, (int32_t *)t->at + t->n);
-	t->n += arc->nruns;
+	t->n += n;
 	return t->n > UINT32_MAX ? -ENOMEM : 0;
 }
 

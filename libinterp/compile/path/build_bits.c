@@ -93,6 +93,7 @@ static int bits_write(const struct greedy_line *l, uint64_t *bits)
 			bits_set(bits, at, r.run[i]);
 	}
 	free(r.run);
+	pulse_string_count(bits, at);
 	return 0;
 }
 

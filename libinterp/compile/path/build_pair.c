@@ -236,7 +236,7 @@ static int follow_walk(struct build_pair *p, struct interp_diag *diag)
 	if (ticks > INTERP_PULSES_MAX || !follow_init(&f, p))
 		return refuse_long(diag);
 	p->ticks = (uint32_t)ticks;
-	p->bits = calloc(ticks / 64 + 1, sizeof(*p->bits));
+	p->bits = calloc(pulse_string_words(ticks) + 1, sizeof(*p->bits));
 	if (!p->bits)
 		return -ENOMEM;
 	for (uint64_t k = 0; k < ticks; k++) {
@@ -246,6 +246,7 @@ static int follow_walk(struct build_pair *p, struct interp_diag *diag)
 			return refuse_long(diag);
 		p->bits[k / 64] |= (uint64_t)i << k % 64;
 	}
+	pulse_string_count(p->bits, ticks);
 	return 0;
 }
 

@@ -18,7 +18,7 @@
 /* Add the couple and its bits to the tables. */
 static int couple_add(struct interp_build *b, const struct build_pair *p)
 {
-	const size_t words = p->bits ? ((size_t)p->ticks + 63) / 64 : 0;
+	const size_t words = p->bits ? pulse_string_words(p->ticks) : 0;
 	struct interp_couple *c = build_seen_add(b, &b->couples);
 
 	if (!c)

@@ -33,6 +33,19 @@ static double node_mm(const struct interp_cursor *c, uint32_t j, bool at_end)
 	       c->p.head->pulse_mm[c->p.head->column[j]];
 }
 
+/* How far the point is from where an axis began. */
+static inline double off_mm(const struct interp_cursor *c,
+			    const struct interp_deviation_way *w)
+{
+	return c->pos[w->axis] * w->pulse_mm - w->from_mm;
+}
+
+/* Where the foot of the point is, as a share of the line. */
+static inline double foot(const struct interp_deviation *d, double dr)
+{
+	return dr <= 0 ? 0 : dr >= d->way2 ? 1 : dr / d->way2;
+}
+
 /* The distance square to the line from node to node, axis by axis from the
  * foot, so that no large squares are subtracted. */
 static double line_deviation(const struct interp_cursor *c,
@@ -41,13 +54,10 @@ static double line_deviation(const struct interp_cursor *c,
 	double from[INTERP_NAXES], dr = 0, r2 = 0, t;
 
 	for (uint32_t k = 0; k < d->nways; k++) {
-		const struct interp_deviation_way *w = &d->way[k];
-
-		from[k] = c->pos[w->axis] * w->pulse_mm - w->from_mm;
-		dr += w->mm * from[k];
+		from[k] = off_mm(c, &d->way[k]);
+		dr += d->way[k].mm * from[k];
 	}
-	/* Where the foot of the point is, as a share of the line. */
-	t = !(d->way2 > 0) || dr <= 0 ? 0 : dr >= d->way2 ? 1 : dr / d->way2;
+	t = d->way2 > 0 ? foot(d, dr) : 0;
 	for (uint32_t k = 0; k < d->nways; k++) {
 		const double r = from[k] - t * d->way[k].mm;
 
@@ -56,11 +66,22 @@ static double line_deviation(const struct interp_cursor *c,
 	return sqrt(r2);
 }
 
+/* The same for a line of two axes, as most are: without loops. */
+static double flat_deviation(const struct interp_cursor *c,
+			     const struct interp_deviation *d)
+{
+	const double a_mm = d->way[0].mm, b_mm = d->way[1].mm;
+	const double a = off_mm(c, &d->way[0]), b = off_mm(c, &d->way[1]);
+	const double t = foot(d, a_mm * a + b_mm * b);
+	const double ra = a - t * a_mm, rb = b - t * b_mm;
+
+	return sqrt(ra * ra + rb * rb);
+}
+
 /* An axis that stands where the line is adds nothing, so it is left out. */
 static void set_line(const struct interp_cursor *c, uint32_t axes,
 		     struct interp_deviation *d)
 {
-	d->of = line_deviation;
 	for (uint32_t j = 0; j < c->p.head->naxes; j++) {
 		const uint32_t axis = c->p.head->column[j];
 		const double from = node_mm(c, j, false);
@@ -74,6 +95,7 @@ static void set_line(const struct interp_cursor *c, uint32_t axes,
 		if (axes >> axis & 1 && (w.mm != 0 || off))
 			d->way[d->nways++] = w;
 	}
+	d->of = d->nways == 2 && d->way2 > 0 ? flat_deviation : line_deviation;
 }
 
 /* Squared distance from the point at share @t of the arc. */
@@ -125,32 +147,78 @@ static double helix_deviation(const struct interp_cursor *c,
 }
 
 /*
- * The distance from the circle, in its plane.  If the two ends are not on one
- * circle because of rounding, `simultaneous` walks the spiral between them, and
- * the other strategies stay on the circle of the start.  A point between the
- * two radii counts as on the arc.
+ * The root of a^2 + b^2, rounded as well as that of hypot(), which asks first
+ * whether squares could overflow: no axis goes so far.  What the root of the
+ * rounded squares is too large by is half of its square less theirs, over the
+ * root; it is computed from the differences of the root and the side nearest to
+ * half of it, which are exact (C. F. Borges, "Algorithm 1014: An improved
+ * algorithm for hypot(x,y)", ACM TOMS 47(1), 2021).
  */
+static inline double root_of_squares(double a, double b)
+{
+	const double p = fabs(a), q = fabs(b);
+	const double large = p > q ? p : q, small = p > q ? q : p;
+	const double h = sqrt(p * p + q * q);
+	double more;
+
+	if (h <= 2 * small) {
+		const double over = h - small;
+
+		more = large * (2 * over - large) +
+		       (over - 2 * (large - small)) * over;
+	} else {
+		const double over = h - large;
+
+		more = 2 * over * (large - 2 * small) +
+		       ((4 * over - small) * small + over * over);
+	}
+	return h > 0 ? h - more / (2 * h) : 0;
+}
+
+/* By how much the point is outside the circle of the start. */
+static inline double outside(const struct interp_cursor *c,
+			     const struct interp_deviation *d)
+{
+	return root_of_squares(off_mm(c, &d->way[0]), off_mm(c, &d->way[1])) -
+	       d->arc.r_mm;
+}
+
+/* The distance from a circle, in its plane. */
 static double circle_deviation(const struct interp_cursor *c,
 			       const struct interp_deviation *d)
 {
-	const struct interp_arc *arc = &d->arc;
-	const double *pulse = c->p.head->pulse_mm;
+	return fabs(outside(c, d));
+}
+
+/*
+ * If the two ends are not on one circle because of rounding, `simultaneous`
+ * walks the spiral between them, and the other strategies stay on the circle of
+ * the start.  A point between the two radii counts as on the arc.
+ */
+static double spiral_deviation(const struct interp_cursor *c,
+			       const struct interp_deviation *d)
+{
 	const double at = c->whole ? (double)c->measure / (double)c->whole : 0;
-	const double r = hypot(c->pos[arc->axis_a] * pulse[arc->axis_a] -
-			       arc->a_mm,
-			       c->pos[arc->axis_b] * pulse[arc->axis_b] -
-			       arc->b_mm) - arc->r_mm;
+	const double dr_mm = d->arc.dr_mm, r = outside(c, d);
 
 	if (d->grows)
-		return fabs(r - arc->dr_mm * at);
-	return fmax(fmax(r - fmax(arc->dr_mm, 0), fmin(arc->dr_mm, 0) - r), 0);
+		return fabs(r - dr_mm * at);
+	return fmax(fmax(r - fmax(dr_mm, 0), fmin(dr_mm, 0) - r), 0);
 }
 
 static void set_circle(const struct interp_cursor *c,
 		       const struct interp_arc *arc, struct interp_deviation *d)
 {
-	d->of = circle_deviation;
+	const double *pulse = c->p.head->pulse_mm;
+
+	d->of = arc->dr_mm != 0 ? spiral_deviation : circle_deviation;
 	d->arc = *arc;
+	d->way[0] = (struct interp_deviation_way) {
+		arc->axis_a, pulse[arc->axis_a], arc->a_mm, 0
+	};
+	d->way[1] = (struct interp_deviation_way) {
+		arc->axis_b, pulse[arc->axis_b], arc->b_mm, 0
+	};
 	d->grows = pulse_strategy(c->p.head->strategy)->at_once;
 }
 
@@ -210,8 +278,8 @@ static void set_pair(const struct interp_cursor *c, struct interp_deviation *d)
 		set_line(c, 1u << arc->axis_a | 1u << arc->axis_b, d);
 }
 
-void interp_deviation_set(const struct interp_cursor *c,
-			  struct interp_deviation *d)
+double interp_deviation_first(const struct interp_cursor *c,
+			      struct interp_deviation *d)
 {
 	*d = (struct interp_deviation) {
 		.nodes = c->p.nodes, .index = c->index, .axes = length_axes(c),
@@ -226,4 +294,5 @@ void interp_deviation_set(const struct interp_cursor *c,
 		d->of = helix_deviation;
 	else
 		set_circle(c, &c->arc, d);
+	return d->of(c, d);
 }

@@ -162,12 +162,68 @@ static int64_t along_tail(struct interp_circle *k, int64_t ticks)
 	return measure;
 }
 
+/* -- Along stored runs ---------------------------------------------------- */
+
+/* Where the walk stands before one run of many: a mark in the program. */
+struct mark {
+	int64_t tick, x, y, measure;
+};
+
+/* Number @i, of the first; behind the runs. */
+static struct mark mark_of(const struct interp_circle *k, uint32_t i)
+{
+	const int32_t *at = k->runs + k->nruns + (size_t)i * CIRCLE_MARK;
+
+	return (struct mark) {
+		.tick = at[0], .x = at[1], .y = at[2],
+		.measure = (int64_t)((uint64_t)(uint32_t)at[4] << 32 |
+				     (uint32_t)at[3]),
+	};
+}
+
+/* No walk goes farther than its pulses. */
+static bool mark_ok(const struct interp_circle *k, const struct mark *m)
+{
+	return llabs(m->x - k->x) + llabs(m->y - k->y) <= m->tick &&
+	       m->measure >= 0 && m->measure <= INT64_MAX / 2;
+}
+
+/* Go to the last mark in front of @ticks, if there is one.  Return: the run that
+ * comes next. */
+static uint32_t to_mark(struct interp_circle *k, int64_t ticks,
+			int64_t *ret_measure)
+{
+	uint32_t low = 0, high = k->nruns / CIRCLE_MARK_RUNS;
+	struct mark m;
+
+	while (low < high) {
+		const uint32_t i = low + (high - low) / 2;
+
+		if (mark_of(k, i).tick < ticks)
+			low = i + 1;
+		else
+			high = i;
+	}
+	*ret_measure = 0;
+	if (low == 0)
+		return 0;
+	m = mark_of(k, low - 1);
+	if (!mark_ok(k, &m))
+		return UINT32_MAX;
+	k->x = m.x;
+	k->y = m.y;
+	k->tick = (uint32_t)m.tick;
+	*ret_measure = m.measure;
+	return low * CIRCLE_MARK_RUNS;
+}
+
 static int64_t along_runs(struct interp_circle *k, int64_t ticks)
 {
 	const int64_t r2 = k->x * k->x + k->y * k->y - k->dev;
-	int64_t measure = 0;
+	int64_t measure;
+	uint32_t i = to_mark(k, ticks, &measure);
 
-	for (uint32_t i = 0; ticks > 0; i++) {
+	for (ticks -= k->tick; ticks > 0; i++) {
 		const int64_t run = i < k->nruns ? k->runs[i] : 0;
 		const int64_t n = least(ticks, llabs(run));
 		const int64_t dir = run < 0 ? -1 : 1;
@@ -183,6 +239,28 @@ static int64_t along_runs(struct interp_circle *k, int64_t ticks)
 	k->dev = k->x * k->x + k->y * k->y - r2;
 	return measure;
 }
+
+void circle_marks(struct interp_circle *k, int32_t *ret)
+{
+	int64_t measure = 0;
+
+	for (uint32_t i = 0; i < k->nruns; i++) {
+		const int64_t run = k->runs[i], dir = run < 0 ? -1 : 1;
+		const bool in_y = (i + k->run_first) & 1;
+
+		measure += row(k, in_y ? 0 : dir, in_y ? dir : 0, llabs(run));
+		if ((i + 1) % CIRCLE_MARK_RUNS != 0)
+			continue;
+		ret[0] = (int32_t)k->tick;
+		ret[1] = (int32_t)k->x;
+		ret[2] = (int32_t)k->y;
+		ret[3] = (int32_t)(uint32_t)measure;
+		ret[4] = (int32_t)(measure >> 32);
+		ret += CIRCLE_MARK;
+	}
+}
+
+/* -- Either --------------------------------------------------------------- */
 
 static int64_t go_to(struct interp_circle *k, uint32_t tick, bool measures)
 {

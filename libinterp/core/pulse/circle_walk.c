@@ -42,8 +42,8 @@ static bool circle_runs_set(struct interp_cursor *c, bool at_end)
 	const struct interp_arc *arc = &c->arc;
 	struct interp_circle *k = &c->circle;
 
-	if (arc->nruns > c->p.head->nruns ||
-	    arc->run_at > c->p.head->nruns - arc->nruns ||
+	if (circle_kept(arc->nruns) > c->p.head->nruns ||
+	    arc->run_at > c->p.head->nruns - circle_kept(arc->nruns) ||
 	    arc->circle_ticks >= INTERP_PULSES_MAX)
 		return false;
 	k->runs = c->p.runs + arc->run_at;

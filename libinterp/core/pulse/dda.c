@@ -29,6 +29,12 @@
 #include <stdlib.h>
 
 #define DDA_SHIFT_MAX	28
+#define SPIN		16		/* ticks */
+
+/* The program keeps the accumulators each time so many ticks are made, so that
+ * no place of a long arc is farther than half of them from a known one. */
+#define MARK_TICKS	1024
+#define MARK_RUNS	4		/* x, y, and their rests */
 
 /* -- Lines ---------------------------------------------------------------- */
 
@@ -90,19 +96,29 @@ INLINE void sums_tick(struct sums *s, uint32_t shift, int64_t ccw)
 	s->second += ccw * (s->first >> shift);
 }
 
-/* Many ticks without a place for their pulses. */
-INLINE bool spin(struct sums *at, uint32_t shift, uint32_t ticks, int64_t ccw)
+INLINE bool sums_in_range(const struct sums *s, uint32_t shift)
 {
 	const int64_t most = INT64_C(1) << 2 * shift;
 	const uint64_t range = (uint64_t)(2 * most + (INT64_C(1) << shift));
+
+	return (uint64_t)(s->first + most) < range &&
+	       (uint64_t)(s->second + most) < range;
+}
+
+/* Many ticks without a place for their pulses.  Sums in their range are so far
+ * from an overflow that several ticks pass before they are looked at again. */
+INLINE bool spin(struct sums *at, uint32_t shift, uint32_t ticks, int64_t ccw)
+{
 	struct sums s = *at;
 
-	for (; ticks > 0 && (uint64_t)(s.first + most) < range &&
-	       (uint64_t)(s.second + most) < range; ticks--)
+	for (; ticks >= SPIN && sums_in_range(&s, shift); ticks -= SPIN) {
+		for (int i = 0; i < SPIN; i++)
+			sums_tick(&s, shift, ccw);
+	}
+	for (; ticks > 0 && sums_in_range(&s, shift); ticks--)
 		sums_tick(&s, shift, ccw);
 	*at = s;
-	return (uint64_t)(s.first + most) < range &&
-	       (uint64_t)(s.second + most) < range;
+	return sums_in_range(&s, shift);
 }
 
 static bool rotor_turn(struct interp_rotor *k, uint32_t ticks, bool back)
@@ -166,9 +182,34 @@ bool dda_measure(struct interp_arc *arc, const int64_t start[2],
 	arc->tail_b = (int32_t)(end[1] - k.y);
 	arc->rest_a = k.rest_x;
 	arc->rest_b = k.rest_y;
+	arc->nruns = arc->tail / MARK_TICKS * MARK_RUNS;
 	arc->circle_ticks = arc->tail +
 		(uint32_t)fmax(abs(arc->tail_a), abs(arc->tail_b));
 	return arc->circle_ticks >= others;
+}
+
+void dda_marks(const struct interp_arc *arc, const int64_t start[2],
+	       int32_t *ret)
+{
+	struct interp_rotor k;
+
+	rotor_set(&k, arc, start);
+	for (uint32_t i = 0; i < arc->nruns; i += MARK_RUNS) {
+		rotor_turn(&k, MARK_TICKS, false);
+		ret[i] = (int32_t)k.x;
+		ret[i + 1] = (int32_t)k.y;
+		ret[i + 2] = (int32_t)k.rest_x;
+		ret[i + 3] = (int32_t)k.rest_y;
+	}
+}
+
+static bool marks_ok(const struct interp_cursor *c)
+{
+	const struct interp_arc *arc = &c->arc;
+	const uint32_t nruns = c->p.head->nruns;
+
+	return arc->nruns == arc->tail / MARK_TICKS * MARK_RUNS &&
+	       arc->nruns <= nruns && arc->run_at <= nruns - arc->nruns;
 }
 
 static bool arc_ok(const struct interp_cursor *c)
@@ -179,7 +220,7 @@ static bool arc_ok(const struct interp_cursor *c)
 
 	if (arc->shift < 2 || arc->shift > DDA_SHIFT_MAX ||
 	    arc->circle_ticks != c->seg.ticks ||
-	    arc->circle_ticks >= INTERP_PULSES_MAX)
+	    arc->circle_ticks >= INTERP_PULSES_MAX || !marks_ok(c))
 		return false;
 	most = INT64_C(1) << arc->shift;
 	return arc->rest_a >= 0 && arc->rest_a < most &&
@@ -340,22 +381,44 @@ bool dda_turn(struct interp_rotor *k, uint32_t ticks)
 	return rotor_turn(k, ticks, false);
 }
 
+/* Behind @n times MARK_TICKS; false: the program is damaged. */
+static bool rotor_at_mark(struct interp_cursor *c, uint32_t n)
+{
+	const int32_t *mark = c->p.runs + c->arc.run_at + (n - 1) * MARK_RUNS;
+	const int64_t modulus = INT64_C(1) << c->arc.shift;
+	struct interp_rotor *k = &c->rotor;
+
+	k->x = mark[0];
+	k->y = mark[1];
+	k->rest_x = mark[2];
+	k->rest_y = mark[3];
+	return rotor_in_range(k) && k->rest_x >= 0 && k->rest_x < modulus &&
+	       k->rest_y >= 0 && k->rest_y < modulus;
+}
+
 /*
- * A rotor's rounding follows from all of its ticks, so they are made one by
- * one, from the nearer end.
+ * A rotor's rounding follows from all of its ticks, so there is no way to it
+ * but these, one by one: from the start, the nearest mark, or the tail.
  */
 static bool rotor_seek(struct interp_cursor *c, uint32_t tick)
 {
 	const struct interp_arc *arc = &c->arc;
+	const uint32_t to = tick < arc->tail ? tick : arc->tail;
+	const uint32_t mark = (to + MARK_TICKS / 2) / MARK_TICKS;
+	const uint32_t at = mark * MARK_TICKS;
 	struct interp_rotor *k = &c->rotor;
-	int64_t at[2] = { 0, 0 };
+	int64_t node[2] = { 0, 0 };
 
-	if (tick <= arc->tail / 2)
-		return rotor_turn(k, tick, false);
-	pulse_circle_node(c, true, at);
-	rotor_set(k, arc, at);
-	rotor_set_tail(k, arc);
-	return rotor_turn(k, tick < arc->tail ? arc->tail - tick : 0, true);
+	if (at > arc->tail || arc->tail - to < MARK_TICKS / 2) {
+		pulse_circle_node(c, true, node);
+		rotor_set(k, arc, node);
+		rotor_set_tail(k, arc);
+		return rotor_turn(k, arc->tail - to, true);
+	}
+	if (mark > 0 && !rotor_at_mark(c, mark))
+		return false;
+	return to >= at ? rotor_turn(k, to - at, false) :
+			  rotor_turn(k, at - to, true);
 }
 
 static int64_t tail_pulses(int64_t forced, int64_t u)

@@ -268,24 +268,6 @@ static void bits_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
 
 /* -- At once --------------------------------------------------------------- */
 
-int64_t pulse_ones(const uint64_t *bits, int64_t n)
-{
-	int64_t ones = 0;
-
-	for (int64_t at = 0; at < n; at += 64) {
-		uint64_t w = bits[at / 64];
-
-		if (n - at < 64)
-			w &= (UINT64_C(1) << (n - at)) - 1;
-		w -= w >> 1 & UINT64_C(0x5555555555555555);
-		w = (w & UINT64_C(0x3333333333333333)) +
-		    (w >> 2 & UINT64_C(0x3333333333333333));
-		w = (w + (w >> 4)) & UINT64_C(0x0f0f0f0f0f0f0f0f);
-		ones += (int64_t)(w * UINT64_C(0x0101010101010101) >> 56);
-	}
-	return ones;
-}
-
 static int64_t within(int64_t v, int64_t low, int64_t high)
 {
 	return v < low ? low : v > high ? high : v;
@@ -330,7 +312,7 @@ void pair_put(struct interp_pair *p, int64_t m, int64_t s)
 static int64_t seconds(struct interp_pair *p, int64_t n)
 {
 	if (p->bits)
-		return pulse_ones(p->bits, n);
+		return pulse_string_ones(p->bits, p->a + p->b, n);
 	/* e = b*n - (a + b)*s is in its window. */
 	if (!p->bursts)
 		return divided(p->b * n - p->limit - p->b, p->a + p->b);
@@ -347,24 +329,6 @@ void pair_seek(struct interp_pair *p, int64_t n)
 	pair_put(p, n - s, s);
 }
 
-/* Pulses in front of the 0 that has @zeros others in front of it. */
-static int64_t bit_of_zero(const uint64_t *bits, int64_t zeros, int64_t most)
-{
-	int64_t at = 0;
-
-	for (; at + 64 <= most; at += 64) {
-		const int64_t some = 64 - pulse_ones(bits + at / 64, 64);
-
-		if (some > zeros)
-			break;
-		zeros -= some;
-	}
-	for (; at < most; at++)
-		if (!(bits[at / 64] >> at % 64 & 1) && zeros-- == 0)
-			break;
-	return at;
-}
-
 int64_t pair_sent(const struct interp_pair *p, int64_t m)
 {
 	struct interp_pair at = *p;
@@ -373,8 +337,8 @@ int64_t pair_sent(const struct interp_pair *p, int64_t m)
 	if (m >= p->a)
 		return p->b;
 	if (p->bits)
-		return within(bit_of_zero(p->bits, m, p->a + p->b) - m, 0,
-			      p->b);
+		return within(pulse_string_zero(p->bits, p->a + p->b, m) - m,
+			      0, p->b);
 	if (!p->bursts)
 		return within(divided(p->b * m - p->limit, p->a), 0, p->b);
 	while (low < high) {

@@ -61,6 +61,7 @@
 #define PULSE_PAIR_H
 
 #include "interp/cursor.h"
+#include "pulse/bit_string.h"
 
 #define PAIR_NEVER	INT64_MAX
 
@@ -130,7 +131,7 @@ void pair_set_bits(struct interp_pair *p, const uint64_t *bits);
 /** pair_words() - words of 64 bits that it takes to store them. */
 static inline uint64_t pair_words(const struct interp_pair *p)
 {
-	return ((uint64_t)(p->a + p->b) + 63) / 64;
+	return pulse_string_words((uint64_t)(p->a + p->b));
 }
 
 /* Is pulse @k, counted from 0, one of the secondary input? */

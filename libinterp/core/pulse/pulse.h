@@ -152,9 +152,6 @@ static inline int64_t pulse_node(const struct interp_cursor *c, uint32_t j,
 	return c->p.nodes[((uint64_t)c->index + at_end) * c->p.head->naxes + j];
 }
 
-/** pulse_ones() - how many of the first @n bits are 1. */
-int64_t pulse_ones(const uint64_t *bits, int64_t n);
-
 /** pulse_in_range() - no correct builder exceeds this. */
 static inline bool pulse_in_range(int64_t sub)
 {
@@ -291,17 +288,35 @@ struct circle_plan {
  */
 bool circle_plan_runs(struct interp_arc *arc, const struct circle_plan *p,
 		      int32_t *runs, uint32_t room);
+/* Behind every so many runs the program keeps where the walk stands then, in so
+ * many numbers: a seek begins there. */
+#define CIRCLE_MARK_RUNS	64
+#define CIRCLE_MARK		5
+/** circle_kept() - numbers that @nruns runs and their marks take. */
+static inline uint64_t circle_kept(uint32_t nruns)
+{
+	return nruns + (uint64_t)(nruns / CIRCLE_MARK_RUNS) * CIRCLE_MARK;
+}
+/** circle_marks() - walk all runs of @k and write the marks, for the builder.
+ *  circle_seek.c. */
+void circle_marks(struct interp_circle *k, int32_t *ret);
 /** circle_smallest_milli() - @milli, or more if the circle needs more. */
 uint32_t circle_smallest_milli(int64_t r2, uint32_t milli);
 
 /**
- * dda_measure() - the same for a pair of accumulators: ticks, tail and rests;
- * at least @others ticks.
+ * dda_measure() - the same for a pair of accumulators: ticks, tail, rests, and
+ * the number of marks; at least @others ticks.
  *
  * Return: false if it has too many ticks.  dda.c.
  */
 bool dda_measure(struct interp_arc *arc, const int64_t start[2],
 		 const int64_t end[2], int64_t others);
+/**
+ * dda_marks() - what the program keeps of them: arc->nruns numbers to @ret, at
+ * which a seek begins.
+ */
+void dda_marks(const struct interp_arc *arc, const int64_t start[2],
+	       int32_t *ret);
 /**
  * dda_turn() - make @ticks of a pair of accumulators.
  *

@@ -20,6 +20,7 @@
  * counted, hundreds of U V behind one of its pulses would come in a burst.
  * Every tick adds one besides, and so makes the measure grow.
  */
+#include "pulse/bit_string.h"
 #include "pulse/pulse.h"
 
 #include <stdlib.h>
@@ -165,7 +166,7 @@ static bool others_stand(const struct interp_cursor *c)
 static bool couple_ok(struct interp_cursor *c)
 {
 	const struct interp_couple *p = &c->couple;
-	const uint64_t words = ((uint64_t)c->seg.ticks + 63) / 64;
+	const uint64_t words = pulse_string_words(c->seg.ticks);
 	const uint64_t ticks = (uint64_t)p->side[0].circle_ticks +
 			       p->side[1].circle_ticks;
 
@@ -357,7 +358,8 @@ static bool pair_side_seek(struct interp_cursor *c, int i, uint32_t tick)
 static bool pair_seek(struct interp_cursor *c, uint32_t tick)
 {
 	const uint32_t second = (uint32_t)
-		pulse_ones(c->p.bits + c->couple.bits_at, tick);
+		pulse_string_ones(c->p.bits + c->couple.bits_at, c->seg.ticks,
+				  tick);
 
 	if (!pair_side_seek(c, 0, tick - second) ||
 	    !pair_side_seek(c, 1, second))

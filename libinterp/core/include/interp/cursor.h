@@ -295,15 +295,15 @@ struct interp_deviation {
 	struct interp_deviation_way {
 		uint32_t axis;
 		double pulse_mm, from_mm, mm;
-	} way[INTERP_NAXES];		/* of a line */
+	} way[INTERP_NAXES];		/* of a line; or a, b of a circle */
 	double way2;			/* its length squared */
 	struct interp_arc arc;		/* of a circle */
 	bool grows;			/* its radius with the place */
 };
 
-/** interp_deviation_set() - for the segment in which @c is. */
-void interp_deviation_set(const struct interp_cursor *c,
-			  struct interp_deviation *d);
+/** interp_deviation_first() - the same as below, of a segment's first point. */
+double interp_deviation_first(const struct interp_cursor *c,
+			      struct interp_deviation *d);
 
 /**
  * interp_cursor_deviation_mm() - distance of pos from the programmed path,
@@ -313,7 +313,7 @@ static inline double interp_cursor_deviation_mm(const struct interp_cursor *c,
 						struct interp_deviation *d)
 {
 	if (d->nodes != c->p.nodes || d->index != c->index)
-		interp_deviation_set(c, d);
+		return interp_deviation_first(c, d);
 	return d->of(c, d);
 }
 

@@ -17,6 +17,8 @@
  * Bits are strings of whole words, with one bit for each pulse.  A line by
  * min-switch has one string for each of its pairs of axes, in the order of
  * pulse/couple.h.  A bit says whether the secondary input gives the pulse.
+ * Behind its bits each string has counts of them (pulse/bit_string.h), at which
+ * a seek begins.
  *
  * Nodes are in fixed-point numbers: 1 pulse = INTERP_SUB subpulses.  So a
  * programmed point between two pulses is kept, and the way there and back is
@@ -190,7 +192,8 @@ struct interp_arc {
 	int32_t tail_a, tail_b;		/* forced pulses from there to the
 					 * end */
 	uint32_t crossings;		/* of the axes through the centre */
-	uint32_t run_at, nruns;		/* runs[run_at ...], min-switch only */
+	uint32_t run_at, nruns;		/* runs[run_at ...]: of min-switch its
+					 * runs, of dda what a seek begins at */
 	int64_t rest_a, rest_b;		/* dda: accumulators before the tail */
 	uint32_t shift;			/* dda: their modulus is 2^shift */
 	uint8_t axis_a, axis_b;		/* enum interp_axis */
@@ -209,7 +212,7 @@ struct interp_arc {
  */
 struct interp_couple {
 	struct interp_arc side[2];
-	uint64_t bits_at;		/* first word; ticks bits from there */
+	uint64_t bits_at;		/* first word of a string of ticks bits */
 };
 
 /*
@@ -317,7 +320,7 @@ struct interp_program_head {
 	uint32_t perpendicular;		/* 1: mu is square to the line; 0: along
 					 * the secondary axis */
 	uint32_t coupling;		/* enum interp_coupling */
-	uint32_t nruns;			/* of arcs by min-switch */
+	uint32_t nruns;			/* of arcs by min-switch and dda */
 	uint64_t runs_at;		/* bytes from the head */
 	double length_mm;
 	uint64_t ncouples, couples_at;
@@ -342,7 +345,8 @@ struct interp_program {
 	const struct interp_arc *arcs;
 	const struct interp_cond *conds;
 	const struct interp_escape *escapes;
-	const int32_t *runs;		/* pulses in a row, signed */
+	const int32_t *runs;		/* pulses in a row, signed; or four
+					 * numbers of a dda's accumulators */
 	const struct interp_couple *couples;
 	const uint64_t *bits;
 	const struct interp_curve *curves;
