@@ -188,8 +188,8 @@ static bool mark_ok(const struct interp_circle *k, const struct mark *m)
 	       m->measure >= 0 && m->measure <= INT64_MAX / 2;
 }
 
-/* Go to the last mark in front of @ticks, if there is one.  Return: the run that
- * comes next. */
+/* Go to the last mark in front of @ticks, if there is one.  Return: the run
+ * that comes next. */
 static uint32_t to_mark(struct interp_circle *k, int64_t ticks,
 			int64_t *ret_measure)
 {

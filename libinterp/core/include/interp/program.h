@@ -212,7 +212,7 @@ struct interp_arc {
  */
 struct interp_couple {
 	struct interp_arc side[2];
-	uint64_t bits_at;		/* first word of a string of ticks bits */
+	uint64_t bits_at;		/* first word of its string */
 };
 
 /*
