@@ -157,7 +157,10 @@ void pass_beside_corner(struct pass *w)
 	if (at == 0 || !is_corner(w, at))
 		return;
 	at = sharpest(w, at);
+	pass_change_anew(w);
 	again = *w;
+	again.gate.next_mm = again.gate.most_mm_s = INFINITY;
+	again.gate.v_mm_s = INFINITY;
 	for (int way = -1; way <= 1; way += 2) {
 		const double mm = pass_sees_mm(w);
 		uint32_t i = at + (uint32_t)way;

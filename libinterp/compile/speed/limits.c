@@ -68,6 +68,7 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 			     .n = p->head->naxes, .at = 1,
 			     .turn_least = { INFINITY, INFINITY },
 			     .a_linear_mm_s2 = INFINITY,
+			     .gate.jerk_mm_s3 = INFINITY,
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
 	for (uint32_t j = 0; j < w->n; j++) {
@@ -80,6 +81,8 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 		w->v_mm_s[j] = m->v_max_mm_s;
 		w->a_mm_s2[j] = m->a_max_mm_s2;
 		w->j_mm_s3[j] = m->j_max_mm_s3;
+		w->gate.jerk_mm_s3 = smaller(w->gate.jerk_mm_s3,
+					     m->j_max_mm_s3);
 		w->step_mm_s[j] = smaller(
 			sqrt(8 * m->a_max_mm_s2 * l->corner_mm),
 			cbrt(m->j_max_mm_s3 * six * six));
@@ -400,6 +403,7 @@ static void look_for_run_end(struct pass *w, uint32_t known)
 static void next_run(struct pass *w, uint32_t i, uint32_t known)
 {
 	pass_beside_corner(w);
+	pass_change_anew(w);
 	w->run = i;
 	w->ahead = heading_run(&w->ways, i);
 	look_for_run_end(w, known);

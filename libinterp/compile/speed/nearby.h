@@ -133,37 +133,70 @@ COLUMNS_INLINE void near_rates(struct pass *w, uint32_t i,
 	}
 }
 
-/*
- * Where every column makes the length, the narrowest window mostly shows enough
- * speed, and nothing else has to be known.  Return: that, or less than @most.
- */
-COLUMNS_INLINE double near_curve(struct pass *w, uint32_t i, double most,
-				 uint32_t n)
+/* The directions to both sides of a node, over half of their length. */
+struct near_bow {
+	const double *a, *b;
+	double mm;
+};
+
+/* Lines as long as the window are their own chords. */
+static inline bool near_is_own(const struct pass *w, uint32_t last, uint32_t i,
+			       double mm)
+{
+	const struct interp_seg *s = w->segs;
+
+	return s[i].length_mm >= mm && s[last].length_mm >= mm &&
+	       last + 1 == i && s[last].kind == INTERP_LINE &&
+	       s[i].kind == INTERP_LINE;
+}
+
+/* Return: false if there is no way to one of the sides. */
+COLUMNS_INLINE bool near_bow_of(struct pass *w, uint32_t i,
+				struct near_bow *ret, uint32_t n)
 {
 	struct around *k = &w->windows[0];
 	struct chord *a = &k->chord[k->on], *b = &k->chord[!k->on];
-	double turn = 0, acc = INFINITY, jerk = INFINITY, v;
 
 	near_look(w, i, k);
 	if (!near_chord_is(a, k->behind, i, near_all(n)))
 		near_chord(w, k->behind, i, near_all(n), a, n);
 	near_chord(w, i, k->ahead, near_all(n), b, n);
-	if (!(a->mm > 0 && b->mm > 0))
+	*ret = (struct near_bow) { a->h.rate, b->h.rate, (a->mm + b->mm) / 2 };
+	return a->mm > 0 && b->mm > 0;
+}
+
+/*
+ * Where every column makes the length, the narrowest window mostly shows enough
+ * speed, and nothing else has to be known.  Return: that, or less than @most.
+ */
+COLUMNS_INLINE double near_curve(struct pass *w, uint32_t last, uint32_t i,
+				 const struct heading *ha,
+				 const struct heading *hb, double most,
+				 uint32_t n)
+{
+	const struct interp_seg *s = w->segs;
+	const bool own = near_is_own(w, last, i, w->windows[0].mm);
+	struct near_bow k = {
+		ha->rate, hb->rate, (s[last].length_mm + s[i].length_mm) / 2
+	};
+	double turn = 0, acc = INFINITY, jerk = INFINITY, v;
+
+	if (!own && !near_bow_of(w, i, &k, n))
 		return 0;
 	for (uint32_t j = 0; j < n; j++) {
-		const double d = b->h.rate[j] - a->h.rate[j];
+		const double d = k.b[j] - k.a[j];
 
 		turn += d * d;
-		if (!(fabs(d) > 0) && b->h.rate[j] == 0)
+		if (!(fabs(d) > 0) && k.b[j] == 0)
 			continue;
 		acc = smaller(acc, w->a_mm_s2[j]);
 		jerk = smaller(jerk, w->j_mm_s3[j]);
 	}
 	v = turn < NEAR_STRAIGHT ? INFINITY :
-	    pass_round_mm_s(larger((a->mm + b->mm) / 2 / sqrt(turn),
-				   w->corner_mm), acc, jerk);
-	if (v >= most)
-		k->on = !k->on;
+	    pass_round_mm_s(larger(k.mm / sqrt(turn), w->corner_mm), acc,
+			    jerk);
+	if (v >= most && !own)
+		w->windows[0].on = !w->windows[0].on;
 	return v;
 }
 
@@ -197,6 +230,44 @@ COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
 	       v * v * v * turn * turn < w->turn_least[1];
 }
 
+/*
+ * As pass_change().  Where no window is narrower than the lines, the change
+ * from the node before the last one shows whether it has to be asked.
+ */
+COLUMNS_INLINE double near_change(struct pass *w, uint32_t last, uint32_t i,
+				  const struct heading *a,
+				  const struct heading *b, double most_mm_s,
+				  uint32_t both, uint32_t n)
+{
+	const struct interp_seg *s = w->segs;
+	struct change_gate *k = &w->gate;
+	const double v = most_mm_s;
+	double *was = k->bend[i & 1];
+	double sum = 0, per_mm, most;
+
+	if (s[i].s_mm < k->next_mm && v <= k->most_mm_s)
+		return k->v_mm_s;
+	if (!near_is_own(w, last, i, w->windows[PASS_CHANGE_FIRST].mm))
+		return pass_change(w, i, both, v);
+	if (k->node + 1 != i)
+		k->first = i;
+	k->node = i;
+	per_mm = 2 / (s[last].length_mm + s[i].length_mm);
+	for (uint32_t j = 0; j < n; j++) {
+		const double bend = (b->rate[j] - a->rate[j]) * per_mm;
+		const double d = bend - was[j];
+
+		was[j] = bend;
+		if (both >> j & 1)
+			sum += d * d;
+	}
+	if (i < k->first + 2)
+		return pass_change(w, i, both, v);
+	most = k->jerk_mm_s3 * (s[i].s_mm - s[i - 2].s_mm);
+	return v * v * v * v * v * v * sum <= most * most ?
+	       INFINITY : pass_change(w, i, both, v);
+}
+
 /* As pass_node_mm_s(). */
 COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 				     const struct heading *a,
@@ -216,12 +287,21 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 			0, { INFINITY, 0 }, { INFINITY, 0 }, INFINITY
 		};
 	if (curves)
-		v = all ? near_curve(w, i, most, n) : 0;
+		v = all ? near_curve(w, last, i, a, b, most, n) : 0;
 	if (curves && v < most)
 		v = pass_curve(w, i, both, most);
 	if (!curves && last + 1 == i && s[last].kind == INTERP_LINE &&
 	    s[i].kind == INTERP_LINE)
 		v = pass_arch(w, i, both, most);
+	if (curves) {
+		const double change = near_change(w, last, i, a, b,
+						  smaller(v, most), both, n);
+
+		v = smaller(v, change);
+		if (!all)
+			w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s,
+						      (float)change);
+	}
 	fast = curves ? smaller(v, most) : v;
 	if (all ? near_turns_faster(w, last, i, a, b, fast, near_all(n), n) :
 		  near_turns_faster(w, last, i, a, b, fast, both, n))

@@ -116,6 +116,37 @@ struct dip {
 	float firm_mm_s;		/* by its own turn */
 };
 
+/* The chords from node to node over three windows. */
+struct bows {
+	struct chord chord[4];
+	double along;			/* the rounding of the path */
+};
+
+/* The narrowest window in which a change of a bend is more than roundings. */
+#define PASS_CHANGE_FIRST	1
+
+/* What it may take of the jerk. */
+#define PASS_CHANGE_SHARE	0.7
+
+/* How the bend of the path changes, as one window shows it. */
+struct changing {
+	double next_mm;			/* from there on it is looked at again,
+					 * */
+	double most_mm_s;		/* and if more than this is asked for */
+	double v_mm_s;
+	double per_mm[INTERP_NAXES];	/* of a bend, in a mm; at most */
+	bool clear;			/* wider windows show no more */
+};
+
+/* When that has to be asked, and what is known until then. */
+struct change_gate {
+	double next_mm, most_mm_s, v_mm_s;
+	double jerk_mm_s3;		/* of the weakest axis */
+	double bend[2][INTERP_NAXES];	/* between long lines, from node @first
+					 * up to @node, of the last two */
+	uint32_t first, node;
+};
+
 /* Nodes to each side of one, and how much of a window. */
 #define DIP_NODES	8
 #define DIP_NEAR	0.25
@@ -140,6 +171,8 @@ struct pass {
 	struct headings headings[2];	/* of the last one */
 	struct ways ways;
 	struct around windows[PASS_WINDOWS], near;
+	struct changing changing[PASS_WINDOWS];
+	struct change_gate gate;
 	uint32_t run, run_end;		/* nodes that windows look between;
 					 * UINT32_MAX: it is farther than any
 					 * window */
@@ -334,6 +367,18 @@ void pass_beside_corner(struct pass *w);
  * curve of its chords; no more than @most_mm_s is asked for.
  */
 double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s);
+
+/** pass_bows() - the chords around node l->node over three times l->window. */
+void pass_bows(struct pass *w, const struct look *l, struct bows *ret);
+
+/** pass_change() - the greatest speed over node @i of short lines by how the
+ *  bend of the path changes around it; no more than @most_mm_s is asked for. */
+double pass_change(struct pass *w, uint32_t i, uint32_t along,
+		   double most_mm_s);
+
+/** pass_change_anew() - what was seen so far says nothing of the nodes to
+ *  come. */
+void pass_change_anew(struct pass *w);
 
 /** pass_curl() - the greatest speed over the same node by how the bend of arcs
  *  changes there. */

@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_axis_bends.c - on smooth ways of many short lines every axis keeps its
+ * acceleration, and its jerk but for a share
+ *
+ * By differences over windows of several cycles, of where the axes are; the
+ * seed is printed.  Lines are off a smooth way: what is commanded may be so by
+ * corner_um, which counts 4 times in a second difference and 8 times in a third
+ * one.
+ */
+#include "axis_track.h"
+
+#include "interp/compile.h"
+
+#include <stdarg.h>
+
+#define ROUNDS	SEED_ROUNDS(30)
+#define CYCLES	60000
+#define RING	128
+
+/* Of the limits: where it bends and speeds up (docs/gap-servo.md, "Not there
+ * yet"). */
+#define MOST_A	1.4
+#define MOST_J	1.7
+
+static uint64_t seed;
+
+static const int windows[] = { 8, 16, 32 };
+
+struct ring {
+	double at[RING][INTERP_NAXES];
+	int n;
+	struct track places;
+};
+
+struct text {
+	char at[2048];
+	size_t n;
+};
+
+__attribute__((format(printf, 2, 3)))
+static void put(struct text *t, const char *format, ...)
+{
+	va_list ap;
+
+	va_start(ap, format);
+	t->n += (size_t)vsnprintf(t->at + t->n, sizeof(t->at) - t->n, format,
+				  ap);
+	va_end(ap);
+	assert_true(t->n < sizeof(t->at));
+}
+
+static struct interp_build *build_begin(void)
+{
+	const struct interp_build_options o = {
+		.machine = &axes_machine, .strategy = INTERP_SIMULTANEOUS,
+	};
+
+	return interp_build_create(&o);
+}
+
+/* A way that bends to and fro, two waves at a time; now and then B goes along
+ * evenly. */
+static struct made sway(uint64_t *s)
+{
+	const struct interp_build_word w = {
+		.line = 1, .feed_mm_s = 80, .rapid = true,
+	};
+	struct interp_build *b = build_begin();
+	const double mm = pow(10, uniform(s, -2, -0.7));
+	const double high[2] = { uniform(s, 0.3, 1.4), uniform(s, 0, 1) };
+	const double wave[2] = { uniform(s, 0.2, 1.5), uniform(s, 0.2, 2.5) };
+	const double first = uniform(s, 0, 6.28);
+	const double deg_mm = rnd(s) % 3 ? 0 : uniform(s, -1, 1);
+	double end[INTERP_NAXES] = { 0 };
+	struct interp_diag d;
+
+	for (double at = 0; at < 20; at += mm) {
+		const double way = first + high[0] * sin(wave[0] * at) +
+				   high[1] * sin(wave[1] * at);
+
+		end[INTERP_X] += mm * cos(way);
+		end[INTERP_Y] += mm * sin(way);
+		end[INTERP_B] += mm * deg_mm;
+		assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+	}
+	return finish(b);
+}
+
+static struct made of_text(const struct text *t)
+{
+	struct interp_kinematics k;
+	const struct interp_compile_options o = { .nc = {
+		.machine = &axes_machine, .feed_mm_s = 80, .kinematics = &k,
+		.tip_tolerance_mm = 0.001,
+	} };
+	const struct interp_text text = {
+		t->at, t->n, interp_dialect_by_name("generic"),
+	};
+	struct interp_build *b = build_begin();
+	struct interp_diag d;
+	uint32_t lines;
+
+	interp_kin_clear(&k);
+	k.tip_mm[2] = -75;
+	assert_int_equal(interp_kin_parse(&k, "C(0 0 -120) A(0 15 -80) X Y Z",
+					  &d), 0);
+	if (interp_compile(&text, &o, b, &lines, &d) != 0)
+		fail_msg("%s; %s\n%s", d.found, d.wanted, t->at);
+	return finish(b);
+}
+
+/* An arc of the tip, the tool leaning. */
+static struct made tip_arc(uint64_t *s)
+{
+	const double r = pow(10, uniform(s, 0, 1.3)), at = uniform(s, 0, 6.28);
+	const double x = uniform(s, -10, 10), y = uniform(s, -10, 10);
+	const double sweep = uniform(s, 0.5, 6);
+	const bool back = rnd(s) % 2;
+	const double to = back ? at - sweep : at + sweep;
+	struct text t = { .n = 0 };
+
+	put(&t, "G90 G43.5 F4800\nG0 X%.5f Y%.5f Z-62 I%.5f J%.5f K1\n",
+	    x + r * cos(at), y + r * sin(at), uniform(s, 0.1, 0.5),
+	    uniform(s, 0.1, 0.5));
+	put(&t, "G%d X%.5f Y%.5f I%.5f J%.5f\nM2\n", back ? 2 : 3,
+	    x + r * cos(to), y + r * sin(to), -r * cos(at), -r * sin(at));
+	return of_text(&t);
+}
+
+static struct made body(uint64_t *s)
+{
+	static const double knots[] = { 0, 0, 0, 0, .35, .7, 1, 1, 1, 1 };
+	double at[] = { 30, 0, -60 }, turn[] = { 0, 0, 0 };
+	struct text t = { .n = 0 };
+
+	put(&t, "G90 G43.4 F4800\nG0 X30 Y0 Z-60\nG6.3 ");
+	for (int i = 0; i < 6; i++) {
+		put(&t, "P%g R%.3f X%.4f Y%.4f Z%.4f Q1 I%.5f J%.5f K%.5f\n",
+		    knots[i], uniform(s, 0.8, 1.2), at[0], at[1], at[2],
+		    turn[0], turn[1], turn[2]);
+		for (int k = 0; k < 3; k++) {
+			at[k] += uniform(s, -1, 1) * (k < 2 ? 12 : 4);
+			turn[k] += uniform(s, -0.2, 0.2);
+		}
+	}
+	for (int i = 6; i < 10; i++)
+		put(&t, "P%g\n", knots[i]);
+	put(&t, "M2\n");
+	return of_text(&t);
+}
+
+static double place_of(const struct ring *k, int back, int axis)
+{
+	return k->at[(k->n - 1 - back) % RING][axis];
+}
+
+static void check_window(const struct ring *k, int window, int axis,
+			 uint32_t index)
+{
+	const struct interp_axis_limits *l = &axes_machine.axis[axis];
+	const double t = PERIOD_S * window, off = INTERP_CORNER_MM + PULSE_MM;
+	const double p[4] = {
+		place_of(k, 0, axis), place_of(k, window, axis),
+		place_of(k, 2 * window, axis), place_of(k, 3 * window, axis),
+	};
+	const double a = (fabs(p[0] - 2 * p[1] + p[2]) - 4 * off) / (t * t);
+	const double j = (fabs(p[0] - 3 * p[1] + 3 * p[2] - p[3]) - 8 * off) /
+			 (t * t * t);
+
+	if (a > MOST_A * l->a_max_mm_s2 || j > MOST_J * l->j_max_mm_s3)
+		fail_msg("axis %c near segment %u, over %d cycles: %g of %g "
+			 "mm/s2, %g of %g mm/s3", INTERP_AXIS_LETTERS[axis],
+			 (unsigned)index, window, a, l->a_max_mm_s2, j,
+			 l->j_max_mm_s3);
+}
+
+static void watch(struct rig *r, struct ring *k)
+{
+	step(r, OPEN_V);
+	places_of(&k->places, r, k->at[k->n % RING]);
+	k->n++;
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < INTERP_NAXES; j++)
+			if (k->n > 3 * windows[i])
+				check_window(k, windows[i], j,
+					     r->c.cursor.index);
+}
+
+static struct cycle_config dry(void)
+{
+	struct cycle_config k = usual_config();
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		k.travel_min[i] = -1000000;
+		k.travel_max[i] = 1000000;
+	}
+	k.travel_a_mm_s2 = 4000;
+	k.travel_j_mm_s3 = 2e5;
+	k.dry_run = k.hold_at_end = true;
+	k.gap.retract_mm_s = 1000;
+	return k;
+}
+
+static void there_and_back(struct made m)
+{
+	const struct cycle_config k = dry();
+	struct ring ring = { .n = 0 };
+	struct rig r;
+
+	rig_take(&r, m, &k);
+	tell(&r, CYCLE_START);
+	for (int n = 0; n < CYCLES && r.c.state == STATE_TRAVEL; n++)
+		watch(&r, &ring);
+	assert_int_equal(r.c.state, STATE_HOLD);
+	tell_mm(&r, CYCLE_RETRACT, 1e9);
+	ring.n = 0;
+	for (int n = 0; n < CYCLES && r.c.hold.moving; n++)
+		watch(&r, &ring);
+	assert_true(place(&r) == 0);
+	rig_free(&r);
+}
+
+static void try(struct made (*random)(uint64_t *s))
+{
+	uint64_t s = seed;
+
+	for (int i = 0; i < ROUNDS; i++) {
+		set_machine(&s);
+		there_and_back(random(&s));
+	}
+}
+
+static void ways_that_bend_to_and_fro_keep_the_limits(void **st)
+{
+	(void)st;
+	try(sway);
+}
+
+static void arcs_of_a_leaning_tool_keep_the_limits(void **st)
+{
+	(void)st;
+	try(tip_arc);
+}
+
+static void bodies_keep_the_limits(void **st)
+{
+	(void)st;
+	try(body);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(ways_that_bend_to_and_fro_keep_the_limits),
+		cmocka_unit_test(arcs_of_a_leaning_tool_keep_the_limits),
+		cmocka_unit_test(bodies_keep_the_limits),
+	};
+
+	seed = seed_take();
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
