@@ -22,7 +22,13 @@
 /* Of its jerk, what a bend may take and is not looked for. */
 #define HARDLY		0.1
 
-void pass_bows(struct pass *w, const struct look *l, struct bows *ret)
+/* The chords from node to node over three windows. */
+struct bows {
+	struct chord chord[4];
+	double along;			/* the rounding of the path */
+};
+
+static void bows_of(struct pass *w, const struct look *l, struct bows *ret)
 {
 	const struct interp_seg *s = w->segs;
 	struct around *k = l->window;
@@ -79,7 +85,7 @@ static struct bend_change bend_change(struct pass *w, const struct look *l,
 	struct bend here;
 	struct bows k;
 
-	pass_bows(w, l, &k);
+	bows_of(w, l, &k);
 	here = bend_of(w, &k, 1, j);
 	for (int n = 0; n < 2; n++) {
 		struct bend next;

@@ -10,58 +10,22 @@
  *
  * The change is a difference of differences, in which roundings show most.  So
  * it is measured over one window after the other, and only what is certain
- * counts.  It is the same at nodes near to each other, and looked at by some of
- * them only.
+ * counts.  It is the same at nodes near to each other: a window moves on by its
+ * own length, and keeps what it has seen.
  */
 #include "speed/nearby.h"
 
 #include <math.h>
-#include <string.h>
 
-/* Of a window, from look to look. */
-#define STEP	1
-
-/* By how much a column's bend changes over a window. */
-struct change {
-	double is, rounding;
-	double mm;
+/* The columns that are looked at, and the greatest speed that is asked for. */
+struct asked {
+	uint32_t along;
+	double most_mm_s;
 };
 
-struct bend {
-	double is, rounding;
-};
-
-static struct bend bend_of(const struct pass *w, const struct chord *c,
-			   uint32_t j)
+static const struct chord *chord_at(const struct changing *c, uint32_t at)
 {
-	const double mm = (c[0].mm + c[1].mm) / 2;
-
-	return (struct bend) {
-		(c[1].h.rate[j] - c[0].h.rate[j]) / mm,
-		w->tol[j] * (c[0].per_mm + c[1].per_mm) / mm,
-	};
-}
-
-/*
- * From the bend before the node to that behind it.  What is a change on one
- * side of the node only is a corner beside it.
- */
-static struct change change_of(const struct pass *w, const struct bows *k,
-			       uint32_t j)
-{
-	const bool from = k->chord[0].mm > 0, to = k->chord[3].mm > 0;
-	const struct bend at = bend_of(w, &k->chord[1], j);
-	const struct bend a = from ? bend_of(w, &k->chord[0], j) : at;
-	const struct bend b = to ? bend_of(w, &k->chord[2], j) : at;
-	struct change ret = {
-		fabs(b.is - a.is), a.rounding + b.rounding,
-		(from ? k->chord[1].mm : 0) + (to ? k->chord[2].mm : 0),
-	};
-
-	if (from && to)
-		ret.is = smaller(ret.is, 2 * smaller(fabs(at.is - a.is),
-						     fabs(b.is - at.is)));
-	return ret;
+	return &c->chord[(c->first + at) & 3];
 }
 
 static double follows_mm_s(const struct pass *w, uint32_t j, double step,
@@ -71,11 +35,14 @@ static double follows_mm_s(const struct pass *w, uint32_t j, double step,
 		      sqrt(w->curl_mm_s2[j] / step));
 }
 
-/* The last node from @from on that is at least @mm before node @i; @from, if
- * none is. */
-static uint32_t back(const struct pass *w, uint32_t from, uint32_t i, double mm)
+/* -- The nodes of a window ------------------------------------------------ */
+
+/* The last node of the run that is at least @mm before node @i, or its first
+ * one. */
+static uint32_t before(const struct pass *w, uint32_t i, double mm)
 {
 	const double most = w->segs[i].s_mm - mm;
+	uint32_t from = w->run;
 
 	while (from + 1 < i) {
 		const uint32_t k = from + (i - from) / 2;
@@ -88,90 +55,192 @@ static uint32_t back(const struct pass *w, uint32_t from, uint32_t i, double mm)
 	return from;
 }
 
-/* What near_look() and pass_bows() would come to node by node. */
-static void catch_up(const struct pass *w, uint32_t i, struct around *k)
+/* The first node of the run that is at least @mm behind node @i, or its last
+ * one.  It may be @guess nodes from there. */
+static uint32_t behind(const struct pass *w, uint32_t i, double mm,
+		       uint32_t guess)
 {
-	const uint32_t run = w->run;
+	const uint32_t end = w->run_end < w->known ? w->run_end : w->known;
+	const double least = w->segs[i].s_mm + mm;
+	uint32_t k = i + guess < end ? i + guess : end;
 
-	k->behind = back(w, k->behind > run ? k->behind : run, i, k->mm);
-	k->before = back(w, k->before > run ? k->before : run, k->behind,
-			 k->mm);
+	while (k < end && w->segs[k].s_mm < least)
+		k++;
+	while (k > i + 1 && w->segs[k - 1].s_mm >= least)
+		k--;
+	return k;
 }
 
-/* One window.  No column bends more than @narrower says, which may be NULL. */
-static void look(struct pass *w, struct look *l,
-		 const struct changing *narrower, struct changing *ret)
+static void begin(const struct pass *w, uint32_t i, uint32_t along, double mm,
+		  struct changing *c)
 {
-	const double v = l->most_mm_s;
-	struct bows k;
+	const uint32_t b = before(w, i, mm), a = before(w, b, mm);
 
-	*ret = (struct changing) {
-		.next_mm = w->segs[l->node].s_mm + STEP * l->window->mm,
-		.most_mm_s = v, .v_mm_s = INFINITY, .clear = true,
+	c->node[0] = i;
+	c->node[1] = behind(w, i, mm, i - b);
+	c->node[2] = behind(w, c->node[1], mm, i - b);
+	c->first = 0;
+	pass_chord(w, a, b, along, &c->chord[0]);
+	pass_chord(w, b, i, along, &c->chord[1]);
+	pass_chord(w, i, c->node[1], along, &c->chord[2]);
+	pass_chord(w, c->node[1], c->node[2], along, &c->chord[3]);
+	c->known = true;
+}
+
+/* By one window. */
+static void move_on(const struct pass *w, uint32_t along, double mm,
+		    struct changing *c)
+{
+	const uint32_t last = c->node[2];
+
+	c->node[2] = behind(w, last, mm, last - c->node[1]);
+	c->node[0] = c->node[1];
+	c->node[1] = last;
+	pass_chord(w, last, c->node[2], along, &c->chord[c->first & 3]);
+	c->first++;
+}
+
+/* Return: false if it is there already. */
+static bool go_to(const struct pass *w, uint32_t i, uint32_t along, double mm,
+		  struct changing *c)
+{
+	if (!c->known || i >= c->node[2] || c->chord[0].h.along != along)
+		begin(w, i, along, mm, c);
+	else if (i >= c->node[1])
+		move_on(w, along, mm, c);
+	else
+		return false;
+	return true;
+}
+
+/* -- What it shows -------------------------------------------------------- */
+
+/* What the bends of all columns have in common: that before the node, at it,
+ * and behind it. */
+struct bends {
+	double per_mm[3];		/* of the change of a rate */
+	double mm;			/* from the first to the last one; 0:
+					 * there are none */
+	double rounding;		/* of a column whose rounding is 1 */
+	bool from, to;			/* is there one before, and behind? */
+};
+
+static void bends_of(const struct changing *c, struct bends *ret)
+{
+	double rounding[3];
+
+	*ret = (struct bends) {
+		.from = chord_at(c, 0)->mm > 0, .to = chord_at(c, 3)->mm > 0,
 	};
-	for (uint32_t j = 0; j < w->n; j++)
-		ret->per_mm[j] = narrower ? narrower->per_mm[j] : INFINITY;
-	catch_up(w, l->node, l->window);
-	near_look(w, l->node, l->window);
-	pass_bows(w, l, &k);
-	if (!(k.chord[1].mm > 0 && k.chord[2].mm > 0))
-		return;
-	for (uint32_t j = 0; j < w->n; j++) {
-		struct change c;
-		double step;
+	for (uint32_t n = 0; n < 3; n++) {
+		const struct chord *a = chord_at(c, n), *b = chord_at(c, n + 1);
 
-		if (!(l->along >> j & 1))
+		ret->per_mm[n] = 2 / (a->mm + b->mm);
+		rounding[n] = (a->per_mm + b->per_mm) * ret->per_mm[n];
+	}
+	if (!(chord_at(c, 1)->mm > 0 && chord_at(c, 2)->mm > 0))
+		return;
+	if (ret->from)
+		ret->mm = chord_at(c, 1)->mm;
+	if (ret->to)
+		ret->mm += chord_at(c, 2)->mm;
+	ret->rounding = rounding[ret->from ? 0 : 1] +
+			rounding[ret->to ? 2 : 1];
+}
+
+static double bend(const struct changing *c, const struct bends *k, uint32_t n,
+		   uint32_t j)
+{
+	return (chord_at(c, n + 1)->h.rate[j] - chord_at(c, n)->h.rate[j]) *
+	       k->per_mm[n];
+}
+
+/*
+ * From the bend before the node to that behind it.  What is a change on one
+ * side of the node only is a corner beside it.
+ */
+static double change_of(const struct changing *c, const struct bends *k,
+			uint32_t j)
+{
+	const double at = bend(c, k, 1, j);
+	const double a = k->from ? bend(c, k, 0, j) : at;
+	const double b = k->to ? bend(c, k, 2, j) : at;
+	const double all = fabs(b - a);
+
+	if (!(k->from && k->to))
+		return all;
+	return smaller(all, 2 * smaller(fabs(at - a), fabs(b - at)));
+}
+
+/* No column bends more than @narrower says, which may be NULL. */
+static void show(const struct pass *w, const struct asked *asked,
+		 const struct changing *narrower, struct changing *c)
+{
+	const double v = asked->most_mm_s, vvv = v * v * v;
+	struct bends k;
+
+	bends_of(c, &k);
+	c->most_mm_s = v;
+	c->v_mm_s = INFINITY;
+	c->clear = true;
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double most = narrower ? narrower->per_mm[j] : INFINITY;
+		const double enough = PASS_CHANGE_SHARE * w->j_mm_s3[j];
+		double change, off, step;
+
+		c->per_mm[j] = most;
+		if (!(asked->along >> j & 1 && k.mm > 0))
 			continue;
-		c = change_of(w, &k, j);
-		if (!(c.mm > 0))
-			continue;
-		step = smaller(c.is - c.rounding, ret->per_mm[j] * c.mm);
-		if (step > 0)
-			ret->v_mm_s = smaller(ret->v_mm_s,
-					      follows_mm_s(w, j, step, c.mm));
-		ret->per_mm[j] = smaller(ret->per_mm[j],
-					 (c.is + c.rounding) / c.mm);
-		if (v * v * v * ret->per_mm[j] > PASS_CHANGE_SHARE * w->j_mm_s3[j])
-			ret->clear = false;
+		change = change_of(c, &k, j);
+		off = w->tol[j] * k.rounding;
+		step = smaller(change - off, most * k.mm);
+		if (vvv * step > enough * k.mm)
+			c->v_mm_s = smaller(c->v_mm_s,
+					    follows_mm_s(w, j, step, k.mm));
+		c->per_mm[j] = smaller(most, (change + off) / k.mm);
+		if (vvv * c->per_mm[j] > enough)
+			c->clear = false;
 	}
 }
 
-/* As look().  What limits by the narrowest window may be a corner beside the
- * node: then it is none in a still narrower one. */
-static void look_near(struct pass *w, struct look *l, struct changing *ret)
+/* Where the narrowest window limits, that may be a corner beside the node: then
+ * it is none in a still narrower one. */
+static void show_near(struct pass *w, const struct asked *asked,
+		      struct changing *c)
 {
-	struct around *k = l->window;
-	struct changing own;
+	struct changing *near = &w->changing[PASS_CHANGE_FIRST - 1];
 
-	look(w, l, NULL, ret);
-	if (!(ret->v_mm_s < l->most_mm_s))
+	show(w, asked, NULL, c);
+	if (!(c->v_mm_s < asked->most_mm_s))
 		return;
-	l->window = &w->windows[PASS_CHANGE_FIRST - 1];
-	look(w, l, NULL, &own);
-	l->window = k;
-	look(w, l, &own, ret);
+	begin(w, c->node[0], asked->along,
+	      w->windows[PASS_CHANGE_FIRST - 1].mm, near);
+	show(w, asked, NULL, near);
+	show(w, asked, near, c);
 }
 
 double pass_change(struct pass *w, uint32_t i, uint32_t along,
 		   double most_mm_s)
 {
-	struct look l = { .node = i, .along = along, .most_mm_s = most_mm_s };
+	const struct asked asked = { along, most_mm_s };
 	const struct changing *narrower = NULL;
 	struct change_gate *gate = &w->gate;
 
-	gate->next_mm = gate->v_mm_s = INFINITY;
+	gate->next = UINT32_MAX;
+	gate->v_mm_s = INFINITY;
 	gate->most_mm_s = most_mm_s;
 	for (uint32_t at = PASS_CHANGE_FIRST; at < PASS_WINDOWS; at++) {
 		struct changing *c = &w->changing[at];
-		const bool due = w->segs[i].s_mm >= c->next_mm ||
-				 most_mm_s > c->most_mm_s;
 
-		l.window = &w->windows[at];
-		if (due && narrower)
-			look(w, &l, narrower, c);
-		else if (due)
-			look_near(w, &l, c);
-		gate->next_mm = smaller(gate->next_mm, c->next_mm);
+		if (go_to(w, i, along, w->windows[at].mm, c) ||
+		    most_mm_s > c->most_mm_s) {
+			if (narrower)
+				show(w, &asked, narrower, c);
+			else
+				show_near(w, &asked, c);
+		}
+		if (c->node[1] < gate->next)
+			gate->next = c->node[1];
 		gate->v_mm_s = smaller(gate->v_mm_s, c->v_mm_s);
 		if (c->clear)
 			break;
@@ -182,7 +251,8 @@ double pass_change(struct pass *w, uint32_t i, uint32_t along,
 
 void pass_change_anew(struct pass *w)
 {
-	memset(w->changing, 0, sizeof(w->changing));
-	w->gate.next_mm = 0;
+	for (uint32_t at = 0; at < PASS_WINDOWS; at++)
+		w->changing[at].known = false;
+	w->gate.next = 0;
 	w->gate.node = 0;
 }

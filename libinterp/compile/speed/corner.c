@@ -159,8 +159,8 @@ void pass_beside_corner(struct pass *w)
 	at = sharpest(w, at);
 	pass_change_anew(w);
 	again = *w;
-	again.gate.next_mm = again.gate.most_mm_s = INFINITY;
-	again.gate.v_mm_s = INFINITY;
+	again.gate.next = UINT32_MAX;
+	again.gate.most_mm_s = again.gate.v_mm_s = INFINITY;
 	for (int way = -1; way <= 1; way += 2) {
 		const double mm = pass_sees_mm(w);
 		uint32_t i = at + (uint32_t)way;

@@ -447,6 +447,7 @@ COLUMNS_INLINE void walk_nodes(struct pass *w, uint32_t known, uint32_t to,
 
 void pass_walk(struct pass *w, uint32_t known, uint32_t to)
 {
+	w->known = known;
 	if (w->run_end == UINT32_MAX)
 		look_for_run_end(w, known);
 	BY_COLUMNS(w->n, walk_nodes, w, known, to);

@@ -245,7 +245,7 @@ COLUMNS_INLINE double near_change(struct pass *w, uint32_t last, uint32_t i,
 	double *was = k->bend[i & 1];
 	double sum = 0, per_mm, most;
 
-	if (s[i].s_mm < k->next_mm && v <= k->most_mm_s)
+	if (i < k->next && v <= k->most_mm_s)
 		return k->v_mm_s;
 	if (!near_is_own(w, last, i, w->windows[PASS_CHANGE_FIRST].mm))
 		return pass_change(w, i, both, v);

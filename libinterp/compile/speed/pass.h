@@ -116,23 +116,22 @@ struct dip {
 	float firm_mm_s;		/* by its own turn */
 };
 
-/* The chords from node to node over three windows. */
-struct bows {
-	struct chord chord[4];
-	double along;			/* the rounding of the path */
-};
-
 /* The narrowest window in which a change of a bend is more than roundings. */
 #define PASS_CHANGE_FIRST	1
 
 /* What it may take of the jerk. */
 #define PASS_CHANGE_SHARE	0.7
 
-/* How the bend of the path changes, as one window shows it. */
+/* How the bend of the path changes, as one window shows it, which is moved on by
+ * its own length. */
 struct changing {
-	double next_mm;			/* from there on it is looked at again,
-					 * */
-	double most_mm_s;		/* and if more than this is asked for */
+	bool known;
+	uint32_t node[3];		/* where it is, and what is one and two
+					 * windows ahead */
+	struct chord chord[4];		/* from @first on: two to the node, and
+					 * two from there; 0 mm: none */
+	uint32_t first;
+	double most_mm_s;		/* no more was asked for */
 	double v_mm_s;
 	double per_mm[INTERP_NAXES];	/* of a bend, in a mm; at most */
 	bool clear;			/* wider windows show no more */
@@ -140,7 +139,8 @@ struct changing {
 
 /* When that has to be asked, and what is known until then. */
 struct change_gate {
-	double next_mm, most_mm_s, v_mm_s;
+	uint32_t next;			/* the first node that is not known */
+	double most_mm_s, v_mm_s;
 	double jerk_mm_s3;		/* of the weakest axis */
 	double bend[2][INTERP_NAXES];	/* between long lines, from node @first
 					 * up to @node, of the last two */
@@ -176,6 +176,7 @@ struct pass {
 	uint32_t run, run_end;		/* nodes that windows look between;
 					 * UINT32_MAX: it is farther than any
 					 * window */
+	uint32_t known;			/* segments that are whole */
 	struct heading_run ahead;	/* how far that was looked for */
 	uint32_t slow;			/* the slowest node of late; 0: none */
 	/* Of each column: */
@@ -367,9 +368,6 @@ void pass_beside_corner(struct pass *w);
  * curve of its chords; no more than @most_mm_s is asked for.
  */
 double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s);
-
-/** pass_bows() - the chords around node l->node over three times l->window. */
-void pass_bows(struct pass *w, const struct look *l, struct bows *ret);
 
 /** pass_change() - the greatest speed over node @i of short lines by how the
  *  bend of the path changes around it; no more than @most_mm_s is asked for. */
