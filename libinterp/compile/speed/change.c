@@ -120,32 +120,26 @@ static bool go_to(const struct pass *w, uint32_t i, uint32_t along, double mm,
 struct bends {
 	double per_mm[3];		/* of the change of a rate */
 	double mm;			/* from the first to the last one; 0:
-					 * there are none */
+					 * there are not all of them */
 	double rounding;		/* of a column whose rounding is 1 */
-	bool from, to;			/* is there one before, and behind? */
 };
 
 static void bends_of(const struct changing *c, struct bends *ret)
 {
 	double rounding[3];
 
-	*ret = (struct bends) {
-		.from = chord_at(c, 0)->mm > 0, .to = chord_at(c, 3)->mm > 0,
-	};
+	*ret = (struct bends) { .mm = 0 };
+	for (uint32_t n = 0; n < 4; n++)
+		if (!(c->chord[n].mm > 0))
+			return;
 	for (uint32_t n = 0; n < 3; n++) {
 		const struct chord *a = chord_at(c, n), *b = chord_at(c, n + 1);
 
 		ret->per_mm[n] = 2 / (a->mm + b->mm);
 		rounding[n] = (a->per_mm + b->per_mm) * ret->per_mm[n];
 	}
-	if (!(chord_at(c, 1)->mm > 0 && chord_at(c, 2)->mm > 0))
-		return;
-	if (ret->from)
-		ret->mm = chord_at(c, 1)->mm;
-	if (ret->to)
-		ret->mm += chord_at(c, 2)->mm;
-	ret->rounding = rounding[ret->from ? 0 : 1] +
-			rounding[ret->to ? 2 : 1];
+	ret->mm = chord_at(c, 1)->mm + chord_at(c, 2)->mm;
+	ret->rounding = rounding[0] + rounding[2];
 }
 
 static double bend(const struct changing *c, const struct bends *k, uint32_t n,
@@ -162,14 +156,10 @@ static double bend(const struct changing *c, const struct bends *k, uint32_t n,
 static double change_of(const struct changing *c, const struct bends *k,
 			uint32_t j)
 {
-	const double at = bend(c, k, 1, j);
-	const double a = k->from ? bend(c, k, 0, j) : at;
-	const double b = k->to ? bend(c, k, 2, j) : at;
-	const double all = fabs(b - a);
+	const double a = bend(c, k, 0, j), at = bend(c, k, 1, j);
+	const double b = bend(c, k, 2, j);
 
-	if (!(k->from && k->to))
-		return all;
-	return smaller(all, 2 * smaller(fabs(at - a), fabs(b - at)));
+	return smaller(fabs(b - a), 2 * smaller(fabs(at - a), fabs(b - at)));
 }
 
 /* No column bends more than @narrower says, which may be NULL. */
@@ -249,10 +239,11 @@ double pass_change(struct pass *w, uint32_t i, uint32_t along,
 	return gate->v_mm_s;
 }
 
-void pass_change_anew(struct pass *w)
+void pass_change_anew(struct pass *w, uint32_t i)
 {
 	for (uint32_t at = 0; at < PASS_WINDOWS; at++)
 		w->changing[at].known = false;
-	w->gate.next = 0;
+	w->gate.next = i;
 	w->gate.node = 0;
+	w->gate.most_mm_s = w->gate.v_mm_s = INFINITY;
 }

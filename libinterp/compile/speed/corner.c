@@ -157,10 +157,9 @@ void pass_beside_corner(struct pass *w)
 	if (at == 0 || !is_corner(w, at))
 		return;
 	at = sharpest(w, at);
-	pass_change_anew(w);
+	pass_change_anew(w, away(w, at, 1, pass_sees_mm(w)));
 	again = *w;
-	again.gate.next = UINT32_MAX;
-	again.gate.most_mm_s = again.gate.v_mm_s = INFINITY;
+	pass_change_anew(&again, UINT32_MAX);
 	for (int way = -1; way <= 1; way += 2) {
 		const double mm = pass_sees_mm(w);
 		uint32_t i = at + (uint32_t)way;

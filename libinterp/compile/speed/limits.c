@@ -379,13 +379,18 @@ COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
 
 /* -- From segment to segment ----------------------------------------------- */
 
+/* No node from that in front of segment @i on sees the slowest one of late. */
+static inline void leave_slow(struct pass *w, uint32_t i)
+{
+	if (w->slow > 0 && pass_from_to(w, w->slow, i) >= pass_sees_mm(w))
+		pass_beside_corner(w);
+}
+
 /* The node in front of segment @i is known. */
 static inline void note_slow(struct pass *w, uint32_t i)
 {
 	const struct interp_seg *s = &w->segs[i];
 
-	if (w->slow > 0 && pass_from_to(w, w->slow, i) >= pass_sees_mm(w))
-		pass_beside_corner(w);
 	if (s[-1].node_mm_s < s->feed_max_mm_s &&
 	    (w->slow == 0 || s[-1].node_mm_s < w->segs[w->slow - 1].node_mm_s))
 		w->slow = i;
@@ -403,7 +408,7 @@ static void look_for_run_end(struct pass *w, uint32_t known)
 static void next_run(struct pass *w, uint32_t i, uint32_t known)
 {
 	pass_beside_corner(w);
-	pass_change_anew(w);
+	pass_change_anew(w, i);
 	w->run = i;
 	w->ahead = heading_run(&w->ways, i);
 	look_for_run_end(w, known);
@@ -431,6 +436,7 @@ COLUMNS_INLINE void walk_nodes(struct pass *w, uint32_t known, uint32_t to,
 		w->a_own_mm_s2[0] = w->a_own_mm_s2[1];
 		w->a_own_mm_s2[1] = (double)w->segs[i].a_mm_s2;
 		if (last > 0) {
+			leave_slow(w, i);
 			limit_node(w, last, i, &was->last, &is->first, n);
 			note_slow(w, i);
 		}

@@ -374,9 +374,9 @@ double pass_curve(struct pass *w, uint32_t i, uint32_t along, double most_mm_s);
 double pass_change(struct pass *w, uint32_t i, uint32_t along,
 		   double most_mm_s);
 
-/** pass_change_anew() - what was seen so far says nothing of the nodes to
- *  come. */
-void pass_change_anew(struct pass *w);
+/** pass_change_anew() - what was seen so far says nothing of the nodes from @i
+ *  on; those before it are not asked. */
+void pass_change_anew(struct pass *w, uint32_t i);
 
 /** pass_curl() - the greatest speed over the same node by how the bend of arcs
  *  changes there. */
