@@ -122,7 +122,7 @@ struct dip {
 /* What it may take of the jerk. */
 #define PASS_CHANGE_SHARE	0.7
 
-/* How the bend of the path changes, as one window shows it, which is moved on by
+/* How the bend of the path changes, as one window shows it; that is moved on by
  * its own length. */
 struct changing {
 	bool known;
