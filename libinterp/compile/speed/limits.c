@@ -382,7 +382,7 @@ static inline void note_slow(struct pass *w, uint32_t i)
 	const struct interp_seg *s = &w->segs[i];
 
 	if (w->slow > 0 && pass_from_to(w, w->slow, i) >= pass_sees_mm(w))
-		pass_beside_corner(w);
+		pass_beside_corner(w, i);
 	if (s[-1].node_mm_s < s->feed_max_mm_s &&
 	    (w->slow == 0 || s[-1].node_mm_s < w->segs[w->slow - 1].node_mm_s))
 		w->slow = i;
@@ -399,7 +399,7 @@ static void look_for_run_end(struct pass *w, uint32_t known)
 
 static void next_run(struct pass *w, uint32_t i, uint32_t known)
 {
-	pass_beside_corner(w);
+	pass_beside_corner(w, i);
 	w->run = i;
 	w->ahead = heading_run(&w->ways, i);
 	look_for_run_end(w, known);
@@ -487,7 +487,7 @@ void pass_finish(struct pass *w, struct interp_bends *bends)
 	w->segs[0].node_mm_s = INFINITY;
 	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
 	pass_walk(w, w->end, w->end + 1);
-	pass_beside_corner(w);
+	pass_beside_corner(w, w->end);
 	pass_bends(w, bends);
 	pass_soften(w);
 	pass_stretches(w);

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * lone.c - is a slow node a lone corner?
+ *
+ * Its windows show a shallow corner as an arc, and those of the nodes beside it
+ * do so, too.  But if the path is straight on both sides, there is no arc, and
+ * the node is a corner between two lines, however short the pieces are in which
+ * they are written.
+ */
+#include "speed/pass.h"
+
+/* Nodes so far from the corner must be faster. */
+#define FASTER		1.05f
+
+/* An arc that is nearer to two lines than so many roundings is their corner. */
+#define STRAIGHT	2
+
+/* The path on one side of a corner. */
+struct side {
+	struct chord chord;
+	double along;			/* the rounding of the path */
+};
+
+/* How far node @i is from the chord, squared, in the columns along. */
+static double off_chord(const struct pass *w, const struct chord *c, uint32_t i)
+{
+	const int64_t *a = w->p->nodes + (uint64_t)c->from * w->n;
+	const int64_t *b = w->p->nodes + (uint64_t)i * w->n;
+	double sum = 0, on = 0;
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double mm = (double)(b[j] - a[j]) * w->ways.sub_mm[j];
+
+		if (!(c->h.along >> j & 1))
+			continue;
+		sum += mm * mm;
+		on += mm * c->h.rate[j];
+	}
+	return larger(sum - on * on, 0);
+}
+
+/* Do the columns beside the path turn evenly, too? */
+static bool is_even(const struct pass *w, const struct side *k, uint32_t i)
+{
+	const struct chord *c = &k->chord;
+	const int64_t *a = w->p->nodes + (uint64_t)c->from * w->n;
+	const int64_t *b = w->p->nodes + (uint64_t)i * w->n;
+	const double way = pass_from_to(w, c->from, i);
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double rate = c->h.rate[j];
+		const double at = (double)(b[j] - a[j]) * w->ways.sub_mm[j];
+
+		if (!(c->h.along >> j & 1) &&
+		    fabs(at - rate * way) >
+			    w->tol[j] + pass_off(w, j, k->along, fabs(rate)))
+			return false;
+	}
+	return true;
+}
+
+/* From node @from to node @to there are short lines on a straight line. */
+static bool is_straight(const struct pass *w, const struct side *k)
+{
+	const struct chord *c = &k->chord;
+	const double most = STRAIGHT * STRAIGHT * k->along * k->along;
+
+	for (uint32_t i = c->from; i < c->to; i++)
+		if (w->segs[i].kind != INTERP_LINE ||
+		    off_chord(w, c, i) > most || !is_even(w, k, i))
+			return false;
+	return true;
+}
+
+/* Which node is the farthest from the chord, of those about as near to node @at
+ * as a window is wide? */
+static uint32_t apex(const struct pass *w, const struct chord *c, uint32_t at)
+{
+	uint32_t best = c->from;
+	double most = -1;
+
+	for (uint32_t i = c->from + 1; i < c->to; i++) {
+		const double off = pass_from_to(w, i, at) < w->windows[0].mm ?
+				   off_chord(w, c, i) : -1;
+
+		if (off > most)
+			best = i;
+		most = larger(most, off);
+	}
+	return best;
+}
+
+/* The speed of node @k; at the ends of the run there is none. */
+static float mm_s_of(const struct pass *w, uint32_t k)
+{
+	return k <= w->run || k >= w->run_end ? INFINITY :
+						w->segs[k - 1].node_mm_s;
+}
+
+/* Is the path straight for so far to both sides? */
+static bool is_between(struct pass *w, double mm, uint32_t at, uint32_t along,
+		       struct lone *ret)
+{
+	struct side k[2];
+	struct chord all;
+
+	pass_chord(w, pass_away(w, at, -1, mm), pass_away(w, at, 1, mm), along,
+		   &all);
+	ret->at = apex(w, &all, at);
+	if (ret->at == all.from)
+		return false;
+	pass_chord(w, pass_away(w, ret->at, -1, mm), ret->at, along,
+		   &k[0].chord);
+	pass_chord(w, ret->at, pass_away(w, ret->at, 1, mm), along,
+		   &k[1].chord);
+	for (int n = 0; n < 2; n++) {
+		k[n].along = pass_along_tol(w, along);
+		if (!(k[n].chord.mm > 0) || !is_straight(w, &k[n]))
+			return false;
+	}
+	ret->mm_s = pass_corner(w, &k[0].chord, &k[1].chord);
+	return true;
+}
+
+bool pass_lone(struct pass *w, uint32_t at, uint32_t known, struct lone *ret)
+{
+	const float v = FASTER * w->segs[at - 1].node_mm_s;
+	const double sees = pass_sees_mm(w);
+	struct headings h;
+
+	if (mm_s_of(w, pass_away(w, at, 1, sees)) < v ||
+	    mm_s_of(w, pass_away(w, at, -1, sees)) < v)
+		return false;
+	heading_of(&w->ways, at, &h);
+	if (!is_between(w, 2 * sees, at, h.first.along, ret) &&
+	    !is_between(w, sees, at, h.first.along, ret))
+		return false;
+	for (int n = 0; n < 2; n++) {
+		const uint32_t k = pass_away(w, ret->at, 2 * n - 1,
+					     w->windows[0].mm);
+
+		if (k > known)
+			return false;
+		ret->beyond_mm_s[n] = mm_s_of(w, k);
+	}
+	ret->mm_s = smaller(ret->mm_s, (double)pass_least(
+			ret->beyond_mm_s[0], ret->beyond_mm_s[1]));
+	return true;
+}
