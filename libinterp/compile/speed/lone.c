@@ -127,21 +127,27 @@ bool pass_lone(struct pass *w, uint32_t at, uint32_t known, struct lone *ret)
 	const float v = FASTER * w->segs[at - 1].node_mm_s;
 	const double sees = pass_sees_mm(w);
 	struct headings h;
+	struct lone k;
 
 	if (mm_s_of(w, pass_away(w, at, 1, sees)) < v ||
 	    mm_s_of(w, pass_away(w, at, -1, sees)) < v)
 		return false;
 	heading_of(&w->ways, at, &h);
-	if (!is_between(w, 2 * sees, at, h.first.along, ret) &&
-	    !is_between(w, sees, at, h.first.along, ret))
+	/* The longer both lines are, the less a rounding turns them. */
+	ret->at = 0;
+	for (double mm = sees; mm <= w->windows[PASS_WINDOWS - 1].mm &&
+			       is_between(w, mm, at, h.first.along, &k);
+	     mm *= 2)
+		*ret = k;
+	if (ret->at == 0)
 		return false;
 	for (int n = 0; n < 2; n++) {
-		const uint32_t k = pass_away(w, ret->at, 2 * n - 1,
-					     w->windows[0].mm);
+		const uint32_t beyond = pass_away(w, ret->at, 2 * n - 1,
+						  w->windows[0].mm);
 
-		if (k > known)
+		if (beyond > known)
 			return false;
-		ret->beyond_mm_s[n] = mm_s_of(w, k);
+		ret->beyond_mm_s[n] = mm_s_of(w, beyond);
 	}
 	ret->mm_s = smaller(ret->mm_s, (double)pass_least(
 			ret->beyond_mm_s[0], ret->beyond_mm_s[1]));
