@@ -112,7 +112,7 @@ static void raise_node(struct pass *w, uint32_t at, uint32_t i, float cap_mm_s)
 	}
 	v = smaller(over_mm_s(w, at, i),
 		    pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first));
-	most = pass_least(cap_mm_s, isinf(v) ? INFINITY : pass_level(w, v));
+	most = pass_least(cap_mm_s, pass_level(w, v));
 	if (most <= s[-1].node_mm_s)
 		return;
 	s[-1].node_mm_s = most;
@@ -176,8 +176,7 @@ void pass_beside_corner(struct pass *w, uint32_t known)
 		return;
 	at = alone ? lone.at : sharpest(w, at);
 	if (alone)
-		w->segs[at - 1].node_mm_s = isinf(lone.mm_s) ? INFINITY :
-					    pass_level(w, lone.mm_s);
+		w->segs[at - 1].node_mm_s = pass_level(w, lone.mm_s);
 	again = *w;
 	for (int n = 0; n < 2; n++)
 		raise_side(w, &again, at, 2 * n - 1, sharp ? far : mm,

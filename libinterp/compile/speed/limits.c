@@ -131,7 +131,7 @@ static float level(const struct pass *w, double v_mm_s)
 
 float pass_level(const struct pass *w, double v_mm_s)
 {
-	return level(w, v_mm_s);
+	return v_mm_s < INFINITY ? level(w, v_mm_s) : INFINITY;
 }
 
 /* So many limits that are near to each other are a plateau. */

@@ -12,8 +12,15 @@
 /* Nodes so far from the corner must be faster. */
 #define FASTER		1.05f
 
-/* An arc that is nearer to two lines than so many roundings is their corner. */
+/* So many roundings off a line are none. */
 #define STRAIGHT	2
+
+/* The middle of an arc is as far from its chord as its turn times its length,
+ * by so much. */
+#define SAGITTA		8
+
+/* By so little a rounding must not bring a speed to the next level below. */
+#define HARDLY		(1 + 1.0 / 128)
 
 /* The path on one side of a corner. */
 struct side {
@@ -97,6 +104,27 @@ static float mm_s_of(const struct pass *w, uint32_t k)
 						w->segs[k - 1].node_mm_s;
 }
 
+/* An arc that turns as much over both sides would not look straight. */
+static bool is_no_arc(const struct pass *w, const struct side k[2])
+{
+	const struct chord *a = &k[0].chord, *b = &k[1].chord;
+	double turn = 0;
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double d = b->h.rate[j] - a->h.rate[j];
+
+		turn += a->h.along >> j & 1 ? d * d : 0;
+	}
+	return sqrt(turn) * smaller(a->mm, b->mm) >
+	       SAGITTA * STRAIGHT * k->along;
+}
+
+/* One line of many on a curve says nothing of it. */
+static bool shows(const struct pass *w, const struct chord *c)
+{
+	return c->to - c->from > 1 || !pass_is_short(w, c->from);
+}
+
 /* Is the path straight for so far to both sides? */
 static bool is_between(struct pass *w, double mm, uint32_t at, uint32_t along,
 		       struct lone *ret)
@@ -118,7 +146,9 @@ static bool is_between(struct pass *w, double mm, uint32_t at, uint32_t along,
 		if (!(k[n].chord.mm > 0) || !is_straight(w, &k[n]))
 			return false;
 	}
-	ret->mm_s = pass_corner(w, &k[0].chord, &k[1].chord);
+	ret->mm_s = shows(w, &k[0].chord) && shows(w, &k[1].chord) &&
+		    is_no_arc(w, k) ?
+		    pass_corner(w, &k[0].chord, &k[1].chord) : 0;
 	return true;
 }
 
@@ -134,12 +164,12 @@ bool pass_lone(struct pass *w, uint32_t at, uint32_t known, struct lone *ret)
 		return false;
 	heading_of(&w->ways, at, &h);
 	/* The longer both lines are, the less a rounding turns them. */
-	ret->at = 0;
+	ret->mm_s = 0;
 	for (double mm = sees; mm <= w->windows[PASS_WINDOWS - 1].mm &&
 			       is_between(w, mm, at, h.first.along, &k);
 	     mm *= 2)
 		*ret = k;
-	if (ret->at == 0)
+	if (!(ret->mm_s > 0))
 		return false;
 	for (int n = 0; n < 2; n++) {
 		const uint32_t beyond = pass_away(w, ret->at, 2 * n - 1,
@@ -149,7 +179,7 @@ bool pass_lone(struct pass *w, uint32_t at, uint32_t known, struct lone *ret)
 			return false;
 		ret->beyond_mm_s[n] = mm_s_of(w, beyond);
 	}
-	ret->mm_s = smaller(ret->mm_s, (double)pass_least(
+	ret->mm_s = smaller(HARDLY * ret->mm_s, (double)pass_least(
 			ret->beyond_mm_s[0], ret->beyond_mm_s[1]));
 	return true;
 }
