@@ -463,11 +463,13 @@ static double slowest(double mm, double turn, double deg_mm)
 
 static void true_corners_are_as_slow_as_between_long_lines(void **st)
 {
-	static const double turns[] = { 0.5, 1, 1.5707963, 2.5, 3.1415926 };
+	static const double turns[] = {
+		0.05, 0.1, 0.2, 0.3, 0.5, 1, 1.5707963, 2.5, 3.1415926
+	};
 
 	(void)st;
 	for (int i = 0; i < 4; i++) {
-		for (int k = 0; k < 5; k++)
+		for (int k = 0; k < 9; k++)
 			assert_true(slowest(steps_mm[i], turns[k], 0) <=
 				    1.05 * slowest(1, turns[k], 0));
 		/* Steps of an axis beside the path. */

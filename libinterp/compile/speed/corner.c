@@ -98,21 +98,29 @@ static double over_mm_s(struct pass *w, uint32_t at, uint32_t i)
 	return first < i && !(first < at && at <= to) ? v : INFINITY;
 }
 
-/* If it is faster now, beside the corner @at; but not above @cap_mm_s. */
-static void raise_node(struct pass *w, uint32_t at, uint32_t i, float cap_mm_s)
+/* One side of a corner. */
+struct beside {
+	uint32_t at;			/* the corner */
+	int way;			/* 1: behind it, -1: before it */
+	double mm;			/* so far nodes see it */
+	float most_mm_s;		/* they are no faster */
+};
+
+/* If it is faster now. */
+static void raise_node(struct pass *w, const struct beside *k, uint32_t i)
 {
 	struct interp_seg *s = &w->segs[i];
 	struct headings h[2];
 	float most;
 	double v;
 
-	for (uint32_t k = 0; k < 2; k++) {
-		heading_of(&w->ways, i - 1 + k, &h[k]);
-		w->a_own_mm_s2[k] = (double)w->segs[i - 1 + k].a_mm_s2;
+	for (uint32_t n = 0; n < 2; n++) {
+		heading_of(&w->ways, i - 1 + n, &h[n]);
+		w->a_own_mm_s2[n] = (double)w->segs[i - 1 + n].a_mm_s2;
 	}
-	v = smaller(over_mm_s(w, at, i),
+	v = smaller(over_mm_s(w, k->at, i),
 		    pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first));
-	most = pass_least(cap_mm_s, pass_level(w, v));
+	most = pass_least(k->most_mm_s, pass_level(w, v));
 	if (most <= s[-1].node_mm_s)
 		return;
 	s[-1].node_mm_s = most;
@@ -133,20 +141,22 @@ static void look_between(struct pass *w, uint32_t run, uint32_t i,
 	}
 }
 
-/* Nodes nearer than @mm to the corner @at, on that side of it. */
-static void raise_side(const struct pass *w, struct pass *again, uint32_t at,
-		       int way, double mm, float cap_mm_s)
+/* Those beside the corner on this side. */
+static void raise_side(const struct pass *w, struct pass *again,
+		       const struct beside *k)
 {
-	uint32_t i = at + (uint32_t)way;
+	const uint32_t at = k->at;
+	uint32_t i = at + (uint32_t)k->way;
 
-	while (i > w->run && i < w->run_end && pass_from_to(w, at, i) < mm &&
-	       is_among(w, i)) {
-		const uint32_t far = pass_away(w, i, way,
+	while (i > w->run && i < w->run_end &&
+	       pass_from_to(w, at, i) < k->mm && is_among(w, i)) {
+		const uint32_t far = pass_away(w, i, k->way,
 					       pass_from_to(w, at, i));
 
-		look_between(again, way > 0 ? at : far, i, way > 0 ? far : at);
-		raise_node(again, at, i, cap_mm_s);
-		i += (uint32_t)way;
+		look_between(again, k->way > 0 ? at : far, i,
+			     k->way > 0 ? far : at);
+		raise_node(again, k, i);
+		i += (uint32_t)k->way;
 	}
 }
 
@@ -179,7 +189,9 @@ void pass_beside_corner(struct pass *w, uint32_t known)
 		w->segs[at - 1].node_mm_s = pass_level(w, lone.mm_s);
 	again = *w;
 	for (int n = 0; n < 2; n++)
-		raise_side(w, &again, at, 2 * n - 1, sharp ? far : mm,
-			   sharp ? INFINITY : lone.beyond_mm_s[n]);
+		raise_side(w, &again, &(struct beside) {
+			at, 2 * n - 1, sharp ? far : mm,
+			sharp ? INFINITY : lone.beyond_mm_s[n],
+		});
 	w->bent_nodes = again.bent_nodes;
 }
