@@ -479,6 +479,47 @@ static void true_corners_are_as_slow_as_between_long_lines(void **st)
 	}
 }
 
+/* The same, if the way goes back a little before it turns. */
+static double slowest_back(double mm, double turn, double back)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	const int there = (int)lround((1 + back) / mm);
+	const int n = there + (int)lround(back / mm);
+	double end[INTERP_NAXES] = { 0 }, least = INFINITY;
+	struct made m;
+
+	for (int i = 1; i <= n + (int)lround(1 / mm); i++) {
+		const double x = i > there ? 2 * there - i : i;
+		const double t = i > n ? (i - n) * mm : 0;
+
+		end[INTERP_X] = rounded((i > n ? 2 * there - n : x) * mm +
+					t * cos(turn), 3);
+		end[INTERP_Y] = rounded(t * sin(turn), 3);
+		dense_line(b, end, true);
+	}
+	m = finish(b);
+	for (uint32_t i = 1; i + 2 < m.p.head->nsegs; i++)
+		least = fmin(least, (double)m.p.segs[i].node_mm_s);
+	unmake(&m);
+	return least;
+}
+
+static void a_way_back_is_no_shallow_corner(void **st)
+{
+	static const double turns[] = { 0.02, 0.05, 0.1, 0.2, 0.3 };
+
+	(void)st;
+	for (int i = 0; i < 4; i++)
+		for (int k = 0; k < 5; k++)
+			for (double back = 0.02; back < 0.2; back *= 1.5) {
+				const double mm = steps_mm[i];
+
+				assert_true(slowest_back(mm, turns[k],
+							 fmax(back, mm)) <=
+					    1.05 * slowest(1, 3.1415926, 0));
+			}
+}
+
 /* -- Corners below the rounding -------------------------------------------- */
 
 static struct interp_build *circle(double r_mm, double mm, double corner_mm)
@@ -552,6 +593,7 @@ int main(void)
 		cmocka_unit_test(a_corner_jolts_an_axis_no_more_in_short_lines),
 		cmocka_unit_test(in_retracts_three_decimals_are_as_quick),
 		cmocka_unit_test(true_corners_are_as_slow_as_between_long_lines),
+		cmocka_unit_test(a_way_back_is_no_shallow_corner),
 		cmocka_unit_test(a_corner_below_the_rounding_shows_the_bend),
 	};
 

@@ -28,8 +28,14 @@ struct side {
 	double along;			/* the rounding of the path */
 };
 
-/* How far node @i is from the chord, squared, in the columns along. */
-static double off_chord(const struct pass *w, const struct chord *c, uint32_t i)
+/* A node, seen along a chord. */
+struct seen {
+	double on, off2;		/* so far along, and from it, squared */
+};
+
+/* In the columns along. */
+static struct seen seen_from(const struct pass *w, const struct chord *c,
+			     uint32_t i)
 {
 	const int64_t *a = w->p->nodes + (uint64_t)c->from * w->n;
 	const int64_t *b = w->p->nodes + (uint64_t)i * w->n;
@@ -43,7 +49,7 @@ static double off_chord(const struct pass *w, const struct chord *c, uint32_t i)
 		sum += mm * mm;
 		on += mm * c->h.rate[j];
 	}
-	return larger(sum - on * on, 0);
+	return (struct seen) { on, larger(sum - on * on, 0) };
 }
 
 /* Do the columns beside the path turn evenly, too? */
@@ -66,16 +72,22 @@ static bool is_even(const struct pass *w, const struct side *k, uint32_t i)
 	return true;
 }
 
-/* From node @from to node @to there are short lines on a straight line. */
+/* Are there lines alone, straight on and never back? */
 static bool is_straight(const struct pass *w, const struct side *k)
 {
 	const struct chord *c = &k->chord;
-	const double most = STRAIGHT * STRAIGHT * k->along * k->along;
+	const double most = STRAIGHT * k->along;
+	double on = 0;
 
-	for (uint32_t i = c->from; i < c->to; i++)
-		if (w->segs[i].kind != INTERP_LINE ||
-		    off_chord(w, c, i) > most || !is_even(w, k, i))
+	for (uint32_t i = c->from; i < c->to; i++) {
+		const struct seen is = seen_from(w, c, i);
+
+		if (w->segs[i].kind != INTERP_LINE || is.off2 > most * most ||
+		    is.on < on - most || is.on > c->mm + most ||
+		    !is_even(w, k, i))
 			return false;
+		on = larger(on, is.on);
+	}
 	return true;
 }
 
@@ -88,7 +100,7 @@ static uint32_t apex(const struct pass *w, const struct chord *c, uint32_t at)
 
 	for (uint32_t i = c->from + 1; i < c->to; i++) {
 		const double off = pass_from_to(w, i, at) < w->windows[0].mm ?
-				   off_chord(w, c, i) : -1;
+				   seen_from(w, c, i).off2 : -1;
 
 		if (off > most)
 			best = i;
