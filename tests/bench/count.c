@@ -149,7 +149,7 @@ static struct interp_program compile(const char *text, size_t size)
 	return bench_program(b);
 }
 
-/* A machine whose axes differ allows more along some lines than along others. */
+/* Where axes differ, lines of some directions may be faster than others. */
 static void count_compile(int kind)
 {
 	struct interp_axis_limits *z = &machine.axes.axis[INTERP_Z];
