@@ -336,8 +336,8 @@ $(B)/unit/test_seal $(B)/unit/test_trust: UNIT_LIBS = -lsodium -llcm -lsystemd
 $(call obj,tests/unit/test_seal.c): | $(B)/messages/lcm.stamp
 
 # Of the store, without the rest of edmd-jobs.
-$(B)/unit/test_store $(B)/unit/test_store_electrode: $(SIGN_O) $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/store*.c) daemon/jobs/trust.c daemon/jobs/jobs_log.c)
-$(B)/unit/test_store $(B)/unit/test_store_electrode: UNIT_LIBS = -lsqlite3 -lsodium -lsystemd
+$(B)/unit/test_store $(B)/unit/test_store_electrode $(B)/unit/test_store_turn: $(SIGN_O) $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/store*.c) daemon/jobs/trust.c daemon/jobs/jobs_log.c)
+$(B)/unit/test_store $(B)/unit/test_store_electrode $(B)/unit/test_store_turn: UNIT_LIBS = -lsqlite3 -lsodium -lsystemd
 
 $(B)/unit/test_checkpoint: $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/checkpoint.c daemon/jobs/checkpoint_block.c) daemon/jobs/jobs_log.c)
 $(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd

@@ -176,8 +176,12 @@ int store_find_number(struct store *s, uint32_t n, struct store_job *ret)
 int store_loaded(struct store *s, struct store_job *ret)
 {
 	int err;
+	/* With all states, for the index that begins with them. */
 	sqlite3_stmt *q = store_ask(s, &err, "SELECT " JOB_COLUMNS " FROM job "
-				    "WHERE loaded=1 ORDER BY n LIMIT 1", "");
+				    "WHERE state IN (" STORE_ENDED ", 'queued'"
+				    ", 'ready', 'running', 'held', "
+				    "'interrupted') AND loaded=1 ORDER BY n "
+				    "LIMIT 1", "");
 
 	return job_get(q, err, ret);
 }
@@ -362,12 +366,6 @@ int store_note(struct store *s, const struct store_note *e)
 }
 
 /* -- Numbers -------------------------------------------------------------- */
-
-uint32_t store_waiting(struct store *s)
-{
-	return (uint32_t)store_number_of(s, 0, "SELECT count(*) FROM job WHERE "
-					 "state='queued' AND loaded=0", "");
-}
 
 int64_t store_number(struct store *s, const char *key, int64_t otherwise)
 {

@@ -128,6 +128,11 @@ static const char *const steps[] = {
 
 	/* Which jobs have a text of a file: store_text.c. */
 	"CREATE INDEX job_by_text ON job(sha256);",
+
+	/* The last events and alarms, and the oldest events. */
+	"CREATE INDEX event_by_time ON event(utime);"
+	"CREATE INDEX event_by_alarm ON event(utime) WHERE kind IN "
+	"('alarm', 'warning', 'lost', 'back');",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))
@@ -273,6 +278,8 @@ static int open_once(struct store *s, sqlite3 **ret)
 		err = check(s, db);
 	if (err == 0)
 		err = bring_up(db);
+	if (err == 0)
+		err = store_count_begin(db);
 	if (err < 0) {
 		/* What SQLite has no error for, who asked says in words. */
 		if (!s->in_memory && sqlite3_errcode(db) != SQLITE_OK)
@@ -373,6 +380,8 @@ sqlite3 *store_file_copy(struct store *s, sqlite3 *disk)
 	    step_up(memory, 0) < 0)
 		abort();
 	s->unread = !disk || copy_tables(disk, memory) != SQLITE_OK;
+	if (store_count_begin(memory) < 0)
+		abort();
 	if (s->unread)
 		log_error("store: %s cannot be read either; what is in it is "
 			  "not known until it can be", s->path);

@@ -147,20 +147,29 @@ void store_measure(struct store *s, struct store_size *ret)
 	snprintf(ret->path, sizeof(ret->path), "%s", s->path);
 }
 
-/* The last 20 jobs stay, so that a clock that jumped does not remove all. */
+/* Ten of the lowest numbers in one state, by the index of the states. */
+#define FIRST(STATE) \
+	"SELECT * FROM (SELECT n AS m FROM job WHERE state='" STATE "' AND " \
+	"loaded=0 ORDER BY n LIMIT 10)"
+
+/* Those above ?2, by their number, and those that ended before ?1.  Each is
+ * found without a look at what stays.  The last 20 jobs stay, so that a clock
+ * that jumped does not remove all. */
 static const char old_jobs[] =
 	"SELECT json_group_array(n), group_concat(sha256, ' ') FROM (SELECT n, "
-	"sha256 FROM job WHERE state IN ('done', 'stopped', 'fault') AND "
-	"loaded=0 AND n NOT IN (SELECT n FROM job ORDER BY n DESC LIMIT 20) "
-	"AND (ended_us<?1 OR n NOT IN (SELECT n FROM job WHERE state IN "
-	"('done', 'stopped', 'fault') ORDER BY n DESC LIMIT ?2)) "
-	"ORDER BY n LIMIT 10)";
+	"sha256 FROM job WHERE n IN (SELECT m FROM (" FIRST("done")
+	" UNION ALL " FIRST("stopped") " UNION ALL " FIRST("fault")
+	" ORDER BY m LIMIT max(0, min(10, (SELECT ended FROM job_count) - ?2)))"
+	" UNION ALL SELECT * FROM (SELECT n FROM job WHERE -ended_us>-?1 AND "
+	"-ended_us<0 AND +state IN (" STORE_ENDED ") AND loaded=0 ORDER BY "
+	"-ended_us DESC LIMIT 30)) AND n NOT IN (SELECT n FROM job ORDER BY n "
+	"DESC LIMIT 20) ORDER BY n LIMIT 10)";
 
 /* They go with their texts. */
 static void retain_jobs(struct store *s, int64_t jobs, int64_t before)
 {
 	sqlite3_stmt *q = store_ask(s, NULL, old_jobs, "ii", before,
-				    jobs ? jobs : -1);
+				    jobs ? jobs : INT64_MAX);
 	const char *texts = q ? (const char *)sqlite3_column_text(q, 1) : NULL;
 
 	if (texts) {
@@ -183,7 +192,7 @@ void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us)
 	retain_jobs(s, jobs, before);
 	store_do(s, STORE_MAY_GO,
 		 "DELETE FROM event WHERE rowid IN (SELECT rowid FROM event "
-		 "WHERE utime<? ORDER BY rowid LIMIT 100)",
+		 "WHERE utime<? ORDER BY utime LIMIT 100)",
 		 "i", before);
 	if (!s->in_memory)
 		sqlite3_exec(s->db, "PRAGMA incremental_vacuum(256)", NULL,

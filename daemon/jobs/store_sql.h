@@ -70,6 +70,9 @@ struct store {
 	char told[512];			/* what was mended at the start */
 };
 
+/* The states of a job that is over, in SQL. */
+#define STORE_ENDED	"'done', 'stopped', 'fault'"
+
 /**
  * store_do() - write.
  *
@@ -132,6 +135,12 @@ int store_file_probe(const struct store *s);
 
 /** store_file_look() - to read only, where nothing can be written; or NULL. */
 sqlite3 *store_file_look(struct store *s);
+
+/* -- store_count.c -------------------------------------------------------- */
+
+/** store_count_begin() - from now on @db counts its jobs: table job_count has
+ *  one row, `waiting` and `ended`.  Return: 0 or -errno. */
+int store_count_begin(sqlite3 *db);
 
 /* -- store_mend.c --------------------------------------------------------- */
 

@@ -22,10 +22,13 @@ static int set_turn(struct store *s, uint32_t n, int64_t turn)
 	return err < 0 ? err : 0;
 }
 
+/* By the index of the order, which has those that were interrupted, too. */
 #define NEIGHBOUR(THAN, ORDER) \
-	"SELECT n, " STORE_TURN " AS t, (SELECT " STORE_TURN " FROM job WHERE " \
-	"n=?) AS mine FROM job WHERE state='queued' AND loaded=0 AND t" THAN \
-	"mine ORDER BY t" ORDER " LIMIT 1"
+	"SELECT n, " STORE_TURN ", (SELECT " STORE_TURN " FROM job WHERE n=?1) " \
+	"FROM job INDEXED BY job_by_turn WHERE state IN ('queued', " \
+	"'interrupted') AND +state='queued' AND loaded=0 AND " STORE_IN_QUEUE \
+	THAN "(SELECT " STORE_IN_QUEUE " FROM job WHERE n=?1) " \
+	"ORDER BY " STORE_IN_QUEUE ORDER " LIMIT 1"
 
 int store_move(struct store *s, uint32_t n, bool ahead)
 {

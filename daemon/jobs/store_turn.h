@@ -23,6 +23,8 @@ struct store;
 #define STORE_LINES	200		/* at once */
 
 /** store_move() - job @n changes places with the one before or behind it.
+ *  To be called between store_together() and store_commit(): two jobs of one
+ *  turn could not change places any more.
  *  Return: 0; -ENOENT if there is none; -EIO. */
 int store_move(struct store *s, uint32_t n, bool ahead);
 

@@ -171,7 +171,9 @@ bool pass_lone(struct pass *w, uint32_t at, uint32_t known, struct lone *ret)
 	struct headings h;
 	struct lone k;
 
-	if (mm_s_of(w, pass_away(w, at, 1, sees)) < v ||
+	/* Between long lines it has its own turn already. */
+	if ((!pass_is_short(w, at - 1) && !pass_is_short(w, at)) ||
+	    mm_s_of(w, pass_away(w, at, 1, sees)) < v ||
 	    mm_s_of(w, pass_away(w, at, -1, sees)) < v)
 		return false;
 	heading_of(&w->ways, at, &h);
