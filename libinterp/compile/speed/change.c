@@ -31,7 +31,8 @@ static const struct chord *chord_at(const struct changing *c, uint32_t at)
 static double follows_mm_s(const struct pass *w, uint32_t j, double step,
 			   double mm)
 {
-	return larger(cbrt(PASS_CHANGE_SHARE * w->j_mm_s3[j] * mm / step),
+	return larger(pass_cube_root(PASS_CHANGE_SHARE * w->j_mm_s3[j] *
+				     mm / step),
 		      sqrt(w->curl_mm_s2[j] / step));
 }
 
