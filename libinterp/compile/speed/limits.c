@@ -131,7 +131,7 @@ static float level(const struct pass *w, double v_mm_s)
 
 float pass_level(const struct pass *w, double v_mm_s)
 {
-	return level(w, v_mm_s);
+	return v_mm_s < INFINITY ? level(w, v_mm_s) : INFINITY;
 }
 
 /* So many limits that are near to each other are a plateau. */
@@ -404,12 +404,12 @@ static inline bool is_among_long(const struct pass *w, uint32_t i)
 	return w->segs[i - 1].length_mm >= mm && w->segs[i].length_mm >= mm;
 }
 
-static inline void beside_slow(struct pass *w)
+static inline void beside_slow(struct pass *w, uint32_t known)
 {
 	if (is_among_long(w, w->slow))
 		w->slow = 0;
 	else
-		pass_beside_corner(w);
+		pass_beside_corner(w, known);
 }
 
 /* The node in front of segment @i is known. */
@@ -418,7 +418,7 @@ static inline void note_slow(struct pass *w, uint32_t i)
 	const struct interp_seg *s = &w->segs[i];
 
 	if (w->slow > 0 && pass_from_to(w, w->slow, i) >= pass_sees_mm(w))
-		beside_slow(w);
+		beside_slow(w, i);
 	if (s[-1].node_mm_s < s->feed_max_mm_s &&
 	    (w->slow == 0 || s[-1].node_mm_s < w->segs[w->slow - 1].node_mm_s))
 		w->slow = i;
@@ -435,7 +435,7 @@ static void look_for_run_end(struct pass *w, uint32_t known)
 
 static void next_run(struct pass *w, uint32_t i, uint32_t known)
 {
-	pass_beside_corner(w);
+	pass_beside_corner(w, i);
 	w->run = i;
 	w->ahead = heading_run(&w->ways, i);
 	look_for_run_end(w, known);
@@ -523,7 +523,7 @@ void pass_finish(struct pass *w, struct interp_bends *bends)
 	w->segs[0].node_mm_s = INFINITY;
 	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
 	pass_walk(w, w->end, w->end + 1);
-	pass_beside_corner(w);
+	pass_beside_corner(w, w->end);
 	pass_bends(w, bends);
 	pass_soften(w);
 	pass_stretches(w);
