@@ -300,7 +300,9 @@ def test_a_long_text_that_is_damaged_or_foreign_is_not_cut(machine):
     m, c = machine, machine.client
     other = LONG_TEXT.replace(b"X0.2", b"X0.9")
     assert len(other) == len(LONG_TEXT) and other != LONG_TEXT
-    for name, bad in (("other", other), ("cut", LONG_TEXT[:-1])):
+    wrong = LONG_TEXT.replace(b"X0.2", b"X0.?")     # no program at all
+    for name, bad in (("other", other), ("cut", LONG_TEXT[:-1]),
+                      ("wrong", wrong)):
         # Only the first of the queue is compiled already.
         assert c.submit(QUICK_JOB, f"before-{name}", hold=True).code == 0
         assert c.submit(LONG_TEXT, name).code == 0
