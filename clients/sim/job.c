@@ -254,62 +254,72 @@ void job_unload(struct sim_job *job)
 	free(job->block);
 }
 
-/* Cuts that can be left beside the path, and those that cannot. */
-static void describe_escapes(const struct sim_job *job, FILE *f)
+/* What is said of the segments of a program. */
+struct sums {
+	uint32_t motions;
+	double cut_mm, free_mm, free_s;	/* cut, and positioned */
+	uint32_t cuts, beside;		/* cuts; those that can be left beside
+					 * the path */
+	uint32_t pieces;		/* of curves */
+	const struct interp_seg *slowest; /* of these; NULL: there is none */
+	uint32_t dwells;
+	double dwell_s;
+};
+
+static void add_curve(struct sums *t, const struct interp_seg *s)
 {
-	const struct interp_program *p = &job->program;
-	uint32_t cuts = 0, beside = 0;
+	t->pieces++;
+	if (!t->slowest || s->feed_max_mm_s < t->slowest->feed_max_mm_s)
+		t->slowest = s;
+}
+
+static void add_motion(struct sums *t, const struct interp_seg *s)
+{
+	t->motions++;
+	if (s->flags & INTERP_SEG_RAPID) {
+		t->free_mm += s->length_mm;
+		t->free_s += s->length_mm / s->feed_mm_s;
+	} else {
+		t->cut_mm += s->length_mm;
+		t->cuts++;
+		t->beside += s->escape != 0;
+	}
+	if (s->kind == INTERP_CURVE)
+		add_curve(t, s);
+}
+
+/* In one walk, because a long program does not fit into the processor's
+ * cache. */
+static struct sums sums_of(const struct interp_program *p)
+{
+	struct sums t = { 0 };
 
 	for (uint32_t i = 0; i < p->head->nsegs; i++) {
 		const struct interp_seg *s = &p->segs[i];
 
-		if (s->kind >= INTERP_BEGIN || s->flags & INTERP_SEG_RAPID)
-			continue;
-		cuts++;
-		beside += s->escape != 0;
+		if (s->kind < INTERP_BEGIN) {
+			add_motion(&t, s);
+		} else if (s->kind == INTERP_DWELL) {
+			t.dwells++;
+			t.dwell_s += s->arg * 1e-3;
+		}
 	}
-	if (p->head->nescapes > 1)
-		fprintf(f, "escapes    %u of %u cut segments; the others, %u, "
-			"lift along the path\n", beside, cuts, cuts - beside);
+	return t;
 }
 
 /* Say where a curve bends so much that its feed must be reduced. */
-static void describe_curves(const struct sim_job *job, FILE *f)
+static void describe_curves(const struct interp_program *p,
+			    const struct sums *t, FILE *f)
 {
-	const struct interp_seg *s = job->program.segs, *slowest = NULL;
-	uint32_t pieces = 0;
+	const struct interp_seg *slowest = t->slowest;
 
-	for (uint32_t i = 0; i < job->program.head->nsegs; i++) {
-		if (s[i].kind != INTERP_CURVE)
-			continue;
-		pieces++;
-		if (!slowest || s[i].feed_max_mm_s < slowest->feed_max_mm_s)
-			slowest = &s[i];
-	}
 	if (!slowest)
 		return;
 	fprintf(f, "curves     %u in %u pieces, %.4g mm/s at most from line %u "
-		"on", (unsigned int)job->program.head->ncurves, pieces,
+		"on", (unsigned int)p->head->ncurves, t->pieces,
 		(double)slowest->feed_max_mm_s, slowest->line);
 	fprintf(f, slowest->feed_max_mm_s < slowest->feed_mm_s ?
 		": slower than F, it bends too much\n" : "\n");
-}
-
-/* A dwell takes time besides that of the path. */
-static void describe_dwells(const struct sim_job *job, FILE *f)
-{
-	const struct interp_program *p = &job->program;
-	uint32_t n = 0;
-	double s = 0;
-
-	for (uint32_t i = 0; i < p->head->nsegs; i++) {
-		if (p->segs[i].kind != INTERP_DWELL)
-			continue;
-		s += p->segs[i].arg * 1e-3;
-		n++;
-	}
-	if (n)
-		fprintf(f, "dwells     %u, %.3f s in all\n", n, s);
 }
 
 void job_describe(const struct sim_job *job, FILE *f)
@@ -317,21 +327,10 @@ void job_describe(const struct sim_job *job, FILE *f)
 	const struct interp_program_head *h = job->program.head;
 	const enum interp_strategy strategy =
 		(enum interp_strategy)h->strategy;
-	const struct interp_seg *s = job->program.segs;
-	double cut_mm = 0, free_mm = 0, free_s = 0;
-	uint32_t motions = 0;
+	const struct sums t = sums_of(&job->program);
 
-	for (uint32_t i = 0; i < h->nsegs; i++) {
-		const bool rapid = s[i].flags & INTERP_SEG_RAPID;
-
-		motions += s[i].kind < INTERP_BEGIN;
-		cut_mm += rapid ? 0 : s[i].length_mm;
-		free_mm += rapid ? s[i].length_mm : 0;
-		free_s += rapid ? s[i].length_mm / s[i].feed_mm_s : 0;
-	}
 	fprintf(f, "lines      %u\nsegments   %u\nstrategy   %s\n", h->lines,
-		motions,
-		interp_strategy_name(strategy));
+		t.motions, interp_strategy_name(strategy));
 	if (interp_strategy_takes_tolerance(strategy))
 		fprintf(f, "tolerance  %g pulses%s\n",
 			h->tolerance_milli / 1000.0,
@@ -340,8 +339,14 @@ void job_describe(const struct sim_job *job, FILE *f)
 		fprintf(f, "coupling   %s\n", interp_coupling_name(
 			(enum interp_coupling)h->coupling));
 	fprintf(f, "path       %.3f mm: %.3f mm cut, %.3f mm positioned in "
-		"%.1f s\n", h->length_mm, cut_mm, free_mm, free_s);
-	describe_dwells(job, f);
-	describe_curves(job, f);
-	describe_escapes(job, f);
+		"%.1f s\n", h->length_mm, t.cut_mm, t.free_mm, t.free_s);
+	/* It takes time besides that of the path. */
+	if (t.dwells)
+		fprintf(f, "dwells     %u, %.3f s in all\n", t.dwells,
+			t.dwell_s);
+	describe_curves(&job->program, &t, f);
+	if (h->nescapes > 1)
+		fprintf(f, "escapes    %u of %u cut segments; the others, %u, "
+			"lift along the path\n", t.beside, t.cuts,
+			t.cuts - t.beside);
 }

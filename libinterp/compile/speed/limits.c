@@ -131,7 +131,7 @@ static float level(const struct pass *w, double v_mm_s)
 
 float pass_level(const struct pass *w, double v_mm_s)
 {
-	return level(w, v_mm_s);
+	return v_mm_s < INFINITY ? level(w, v_mm_s) : INFINITY;
 }
 
 /* So many limits that are near to each other are a plateau. */
@@ -281,13 +281,33 @@ COLUMNS_INLINE double limit_line(struct pass *w, uint32_t i,
 	return larger((double)w->segs[i].feed_max_mm_s, rates.v_mm_s);
 }
 
+/* The same of a line that is not short. */
+COLUMNS_INLINE double limit_long(struct pass *w, uint32_t i,
+				 const struct headings *h, uint32_t n)
+{
+	const struct along left = { 1, 1, INFINITY, INFINITY };
+	struct interp_seg *s = &w->segs[i];
+	struct rates rates;
+
+	near_other_rates(s, h, &rates, n);
+	soften_seg(w, s, &left, &rates, n);
+	return (double)s->feed_max_mm_s;
+}
+
 COLUMNS_INLINE void limit_seg(struct pass *w, uint32_t i,
 			      const struct headings *h, uint32_t n)
 {
 	struct interp_seg *s = &w->segs[i];
-	const bool near = s->kind == INTERP_LINE && pass_is_short(w, i) &&
-			  h->first.along == near_usual(n);
-	double v = near ? limit_line(w, i, &h->first, n) : limit_bend(w, i, h);
+	const bool line = s->kind == INTERP_LINE;
+	const bool near = line && pass_is_short(w, i);
+	double v;
+
+	if (near && h->first.along == near_usual(n))
+		v = limit_line(w, i, &h->first, n);
+	else if (line && !near)
+		v = limit_long(w, i, h, n);
+	else
+		v = limit_bend(w, i, h);
 
 	/* A cycle that has no time for its points would break off the move. */
 	if (s->ticks >= MANY_POINTS)
@@ -376,13 +396,29 @@ COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
 
 /* -- From segment to segment ----------------------------------------------- */
 
+/* No node beside it is between short lines. */
+static inline bool is_among_long(const struct pass *w, uint32_t i)
+{
+	const double mm = larger(w->short_mm, w->near.mm);
+
+	return w->segs[i - 1].length_mm >= mm && w->segs[i].length_mm >= mm;
+}
+
+static inline void beside_slow(struct pass *w, uint32_t known)
+{
+	if (is_among_long(w, w->slow))
+		w->slow = 0;
+	else
+		pass_beside_corner(w, known);
+}
+
 /* The node in front of segment @i is known. */
 static inline void note_slow(struct pass *w, uint32_t i)
 {
 	const struct interp_seg *s = &w->segs[i];
 
 	if (w->slow > 0 && pass_from_to(w, w->slow, i) >= pass_sees_mm(w))
-		pass_beside_corner(w);
+		beside_slow(w, i);
 	if (s[-1].node_mm_s < s->feed_max_mm_s &&
 	    (w->slow == 0 || s[-1].node_mm_s < w->segs[w->slow - 1].node_mm_s))
 		w->slow = i;
@@ -399,7 +435,7 @@ static void look_for_run_end(struct pass *w, uint32_t known)
 
 static void next_run(struct pass *w, uint32_t i, uint32_t known)
 {
-	pass_beside_corner(w);
+	pass_beside_corner(w, i);
 	w->run = i;
 	w->ahead = heading_run(&w->ways, i);
 	look_for_run_end(w, known);
@@ -487,7 +523,7 @@ void pass_finish(struct pass *w, struct interp_bends *bends)
 	w->segs[0].node_mm_s = INFINITY;
 	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
 	pass_walk(w, w->end, w->end + 1);
-	pass_beside_corner(w);
+	pass_beside_corner(w, w->end);
 	pass_bends(w, bends);
 	pass_soften(w);
 	pass_stretches(w);

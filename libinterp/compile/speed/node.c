@@ -346,6 +346,15 @@ COLUMNS_INLINE double around(struct pass *w, struct change *c, uint32_t both,
 	return smaller(corner(w, c, both, n), step(w, c->d, near_all(n), n));
 }
 
+double pass_corner(struct pass *w, const struct chord *a,
+		   const struct chord *b)
+{
+	struct change c = { .a = &a->h, .b = &b->h,
+			    .per_mm = a->per_mm + b->per_mm };
+
+	return around(w, &c, a->h.along, w->n);
+}
+
 /* How much column rates change from segment @i to the next one; by nothing if
  * they are no lines of this run. */
 static void turn_behind(const struct pass *w, uint32_t i,
@@ -375,6 +384,9 @@ double pass_arch(const struct pass *w, uint32_t i, uint32_t along,
 	double v = most_mm_s;
 	bool turns = false;
 
+	/* A share of X Y Z changes by 2 at most. */
+	if (!(along & ~w->ways.xyz) && 2 * v * v <= w->a_linear_mm_s2 * mm)
+		return INFINITY;
 	turn_behind(w, i - 1, here);
 	for (uint32_t j = 0; j < w->n; j++)
 		turns = turns || (along >> j & 1 &&
@@ -548,25 +560,6 @@ void pass_peaks(struct pass *w, uint32_t i, struct chord *around)
 	BY_WAYS(w->n, around->h.along, find_peaks, w, i, around);
 }
 
-COLUMNS_INLINE void other_rates(const struct interp_seg *s,
-				const struct headings *h, struct rates *ret,
-				uint32_t n)
-{
-	ret->v_mm_s = 0;
-	for (uint32_t j = 0; j < n; j++) {
-		const double ends = larger(fabs(h->first.rate[j]),
-					   fabs(h->last.rate[j]));
-		/* U V go round a bend of their own. */
-		const bool bends = s->kind != INTERP_LINE && ends > 0 &&
-				   (s->kind == INTERP_PAIR ||
-				    (h->first.along | h->last.along) >> j & 1);
-
-		/* On its way it may go in the direction of the axis alone. */
-		ret->by[j] = bends ? larger(ends, larger(h->share, 1)) : ends;
-		ret->bends |= (uint32_t)bends << j;
-	}
-}
-
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		struct rates *ret)
 {
@@ -577,5 +570,5 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		BY_WAYS(w->n, h->first.along, near_rates, w, i, &h->first,
 			ret);
 	else
-		BY_COLUMNS(w->n, other_rates, s, h, ret);
+		BY_COLUMNS(w->n, near_other_rates, s, h, ret);
 }

@@ -13,6 +13,7 @@
 #include "speed/heading.h"
 
 #include <math.h>
+#include <string.h>
 
 /*
  * A curve of short lines is looked at over windows of so many corners to each
@@ -171,6 +172,28 @@ struct pass {
 };
 
 /**
+ * pass_cube_root() - of a number above 0, 1e-14 of it off at most.
+ *
+ * A third of the exponent is 3 % off, and a step by Halley makes a cube of what
+ * was off.  cbrt() takes five times as long, and limits become levels anyway.
+ */
+static inline double pass_cube_root(double d)
+{
+	uint64_t bits;
+	double r;
+
+	memcpy(&bits, &d, sizeof(bits));
+	bits = bits / 3 + UINT64_C(0x2a9f7893782da1ce);
+	memcpy(&r, &bits, sizeof(r));
+	for (int i = 0; i < 2; i++) {
+		const double cube = r * r * r;
+
+		r *= (cube + 2 * d) / (2 * cube + d);
+	}
+	return r;
+}
+
+/**
  * pass_round_mm_s() - the greatest speed around a bend, if the axes have so
  * much acceleration.
  */
@@ -179,7 +202,7 @@ static inline double pass_round_mm_s(double r_mm, double a_mm_s2,
 {
 	const double v = sqrt(a_mm_s2 * r_mm), jrr = j_mm_s3 * r_mm * r_mm;
 
-	return v * v * v <= jrr ? v : cbrt(jrr);
+	return v * v * v <= jrr ? v : pass_cube_root(jrr);
 }
 
 /* Longer lines have no curve beside the one that their corners show. */
@@ -325,9 +348,38 @@ static inline double pass_sees_mm(const struct pass *w)
 	return PASS_SEES * w->windows[0].mm;
 }
 
+/** pass_away() - the next node at least @mm from node @i in its run, forward if
+ *  @way is 1, back if -1. */
+static inline uint32_t pass_away(const struct pass *w, uint32_t i, int way,
+				 double mm)
+{
+	uint32_t k = i;
+
+	while (k > w->run && k < w->run_end && pass_from_to(w, i, k) < mm)
+		k += (uint32_t)way;
+	return k;
+}
+
+/* A corner between two lines, each of short ones. */
+struct lone {
+	uint32_t at;			/* its node */
+	double mm_s;
+	float beyond_mm_s[2];		/* of the next nodes that do not see it,
+					 * behind and ahead */
+};
+
+/** pass_lone() - is there one at the slow node @at, or near to it?  Nodes up to
+ *  @known are known. */
+bool pass_lone(struct pass *w, uint32_t at, uint32_t known, struct lone *ret);
+
+/** pass_corner() - the greatest speed from chord @a to chord @b, which have the
+ *  same columns. */
+double pass_corner(struct pass *w, const struct chord *a,
+		   const struct chord *b);
+
 /** pass_beside_corner() - if the slowest node of late is a corner, the nodes
- *  beside it are no slower by it. */
-void pass_beside_corner(struct pass *w);
+ *  beside it are no slower by it.  Nodes up to @known are known. */
+void pass_beside_corner(struct pass *w, uint32_t known);
 
 /**
  * pass_curve() - the greatest speed over the node in front of segment @i on the

@@ -13,16 +13,14 @@
  * degrees, a move is as slow as at a corner, and what both sides allow is
  * hardly alike.  It stands there, too, if that is quicker.
  *
- * Every segment belongs to a class.  From one class to the next, acceleration
- * or jerk is half as much.  Softer segments between harder ones are a
+ * Every segment belongs to a class: from one to the next, acceleration or jerk
+ * is half as much.  Softer segments between harder ones are a
  * stretch of their own, or they are not; whatever is quicker.
  */
 #include "speed/pass.h"
 
 #include <math.h>
 
-/* A power of two, from class to class. */
-#define CLASS_BITS	1
 #define CLASSES_MAX	40
 
 /* Stands must save so much of the time. */
@@ -40,13 +38,24 @@ struct stretches {
 	double a_mm_s2, j_mm_s3;	/* the most of all segments */
 };
 
-static int class_of(const struct stretches *w, const struct interp_seg *s)
-{
-	const int a = ilogb(w->a_mm_s2 / (double)s->a_mm_s2);
-	const int j = ilogb(w->j_mm_s3 / (double)s->j_mm_s3);
-	const int c = (a > j ? a : j) / CLASS_BITS;
+/* A segment with no more than one of these is of a higher class. */
+struct border {
+	float a_mm_s2, j_mm_s3;
+};
 
-	return c < CLASSES_MAX ? c : CLASSES_MAX;
+static struct border border_of(const struct stretches *w, int c)
+{
+	if (c >= CLASSES_MAX)
+		return (struct border) { 0, 0 };
+	return (struct border) {
+		(float)ldexp(w->a_mm_s2, -c - 1),
+		(float)ldexp(w->j_mm_s3, -c - 1)
+	};
+}
+
+static inline bool is_above(const struct border *k, const struct interp_seg *s)
+{
+	return s->a_mm_s2 <= k->a_mm_s2 || s->j_mm_s3 <= k->j_mm_s3;
 }
 
 static struct stretch none(uint32_t at)
@@ -62,15 +71,15 @@ static void append(struct stretch *t, const struct interp_seg *s)
 		return;
 	t->mm += s->length_mm;
 	t->cruise_s += s->length_mm / (double)s->feed_max_mm_s;
-	t->a_mm_s2 = fmin(t->a_mm_s2, (double)s->a_mm_s2);
-	t->j_mm_s3 = fmin(t->j_mm_s3, (double)s->j_mm_s3);
+	t->a_mm_s2 = smaller(t->a_mm_s2, (double)s->a_mm_s2);
+	t->j_mm_s3 = smaller(t->j_mm_s3, (double)s->j_mm_s3);
 }
 
 static struct stretch join(const struct stretch *a, const struct stretch *b)
 {
 	return (struct stretch) {
 		a->from, b->to, a->mm + b->mm, a->cruise_s + b->cruise_s,
-		fmin(a->a_mm_s2, b->a_mm_s2), fmin(a->j_mm_s3, b->j_mm_s3)
+		smaller(a->a_mm_s2, b->a_mm_s2), smaller(a->j_mm_s3, b->j_mm_s3)
 	};
 }
 
@@ -112,10 +121,11 @@ static void set_stand(struct stretches *w, uint32_t i, bool stands)
 static struct stretch run(const struct stretches *w, uint32_t from, uint32_t to,
 			  int c, bool above)
 {
+	const struct border k = border_of(w, c);
 	struct stretch t = none(from);
 
 	while (t.to < to && (w->segs[t.to].kind >= INTERP_BEGIN ||
-			     (class_of(w, &w->segs[t.to]) > c) == above))
+			     is_above(&k, &w->segs[t.to]) == above))
 		append(&t, &w->segs[t.to]);
 	return t;
 }
@@ -155,7 +165,7 @@ static struct stretch as_soft(const struct stretch *t,
 static double pass_s(const struct stretch *a, const struct stretch *b,
 		     const struct stretch *as)
 {
-	const double v = fmin(a->mm / a->cruise_s, b->mm / b->cruise_s);
+	const double v = smaller(a->mm / a->cruise_s, b->mm / b->cruise_s);
 
 	return a->mm > 0 && b->mm > 0 ? ramp_s(as, v) : 0;
 }
@@ -179,7 +189,7 @@ static double one_move_s(const struct stretches *w, uint32_t from, uint32_t to,
 		last = two;
 		i = soft.to;
 	}
-	return fmax(sum, time_s(all));
+	return larger(sum, time_s(all));
 }
 
 /* Put stands into [@from, @to), where it is class @c at least.  Return: the
@@ -210,6 +220,43 @@ static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
 	for (uint32_t i = from; i + 1 < to; i++)
 		set_stand(w, i, false);
 	return one;
+}
+
+/* time_s() of a stretch that does not reach its speed may be more than its
+ * cruise and one ramp, by less than this. */
+#define RAMP_MOST	1.1
+
+/*
+ * May stands save enough?  No division takes less than all at the speed that is
+ * allowed; and one move over all no more than that, and a ramp for each time
+ * that it passes from a class to another one.  To know this takes one look at
+ * each segment, and for most programs it is the answer.
+ */
+static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to)
+{
+	const struct border k = border_of(w, 0);
+	struct stretch all = none(from);
+	double most_mm_s = 0, ramps = 1;
+	bool was = false;
+
+	while (all.to < to) {
+		const struct interp_seg *s = &w->segs[all.to];
+
+		append(&all, s);
+		if (s->kind >= INTERP_BEGIN)
+			continue;
+		most_mm_s = larger(most_mm_s, (double)s->feed_max_mm_s);
+		ramps += is_above(&k, s) != was;
+		was = is_above(&k, s);
+	}
+	return all.cruise_s < WORTH * (all.cruise_s + RAMP_MOST * ramps *
+				       ramp_s(&all, most_mm_s));
+}
+
+static void divide_all(struct stretches *w, uint32_t from, uint32_t to)
+{
+	if (may_pay(w, from, to))
+		divide(w, from, to, 0);
 }
 
 /* Up to the next node where the length passes to other axes. */
@@ -247,14 +294,14 @@ static void divide_parts(struct stretches *w, uint32_t end)
 		const struct stretch next = part(w, t.to, end);
 
 		if (parts_pay(w, &t, &next)) {
-			divide(w, t.from, t.to, 0);
+			divide_all(w, t.from, t.to);
 			t = next;
 			continue;
 		}
 		set_stand(w, t.to - 1, false);
 		t = join(&t, &next);
 	}
-	divide(w, t.from, t.to, 0);
+	divide_all(w, t.from, t.to);
 }
 
 void pass_stretches(struct pass *pass)
@@ -264,7 +311,6 @@ void pass_stretches(struct pass *pass)
 
 	if (pass->parts)
 		divide_parts(&w, pass->p->head->nsegs - 1);
-	else if (k->a_most >= k->a_least * (1 << CLASS_BITS) ||
-	    k->j_most >= k->j_least * (1 << CLASS_BITS))
-		divide(&w, 0, pass->p->head->nsegs - 1, 0);
+	else if (k->a_most >= k->a_least * 2 || k->j_most >= k->j_least * 2)
+		divide_all(&w, 0, pass->p->head->nsegs - 1);
 }
