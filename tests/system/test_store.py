@@ -149,6 +149,7 @@ def test_a_job_is_removed_though_the_disk_is_full(failing):
     m.start_jobs()
     c.status_where(lambda s: s.daemon == "ok")
     assert c.job("second")["state"] == "stopped"
+    c.job_where("third", "ready")       # not while it is being loaded
     assert c.ask("remove", "third").reason == "removed"
 
 
