@@ -147,7 +147,8 @@ float pass_level(const struct pass *w, double v_mm_s)
  * is lower still, its coarse level stands once.  So a way that becomes slower
  * and slower has no more levels than it would have without plateaus, and seen
  * from its other end twice as many.  Single limits far from it, as those of
- * lines that a rounding made longer, do not end it.
+ * lines that a rounding made longer, do not end it.  But a move is no faster
+ * than the low ones: where these are a third and more, they are the plateau.
  */
 static float plateau_level(struct pass *w, double v_mm_s)
 {
@@ -157,15 +158,21 @@ static float plateau_level(struct pass *w, double v_mm_s)
 
 	if (v_mm_s >= low && v_mm_s < PLATEAU_HIGH * low) {
 		p->far = 0;
+		p->below -= p->below > 0;
 		return ++p->near > PLATEAU ? p->low_mm_s :
 					     pass_least(most, p->low_mm_s);
 	}
-	if (v_mm_s < low && PLATEAU_HIGH * v_mm_s >= low)
-		p->far = 0;
-	else if (++p->far <= PLATEAU)
-		return most;
-	else
-		p->near = p->far = 0;
+	if (v_mm_s < low && PLATEAU_HIGH * v_mm_s >= low) {
+		p->far = p->below = 0;
+	} else {
+		if (v_mm_s < low)
+			p->below += 2;
+		else
+			p->below -= p->below > 0;
+		if (++p->far <= PLATEAU && p->below <= 2 * PLATEAU)
+			return most;
+		p->near = p->far = p->below = 0;
+	}
 	p->low_mm_s = down_to(v_mm_s, FINE);
 	return most;
 }
@@ -316,8 +323,8 @@ COLUMNS_INLINE void limit_seg(struct pass *w, uint32_t i,
 	if (s->ticks >= MANY_POINTS)
 		v = smaller(v, w->points_per_s * s->length_mm /
 				   (double)s->ticks);
-	s->feed_max_mm_s = near_all(n) == near_usual(n) ? level(w, v) :
-							  plateau_level(w, v);
+	s->feed_max_mm_s = near_all(n) == w->ways.xyz ? level(w, v) :
+							plateau_level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;
 }

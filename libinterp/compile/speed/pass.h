@@ -157,6 +157,8 @@ struct change_gate {
 struct plateau {
 	float low_mm_s;
 	uint32_t near, far;		/* that many of late */
+	uint32_t below;			/* far below: 2 for each, less 1 for
+					 * each other one */
 };
 
 struct pass {
