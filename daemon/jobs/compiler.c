@@ -20,6 +20,7 @@
  */
 #define SEGS_MAX	8000000u
 #define EXECUTED_MAX	32000000u
+#define LONG_BYTES	(1u << 18)	/* of a text: worth a second thread */
 
 struct compiler {
 	pthread_t thread;
@@ -185,10 +186,52 @@ static int take_text(struct compiler *c)
 	int err;
 
 	if (r->text)
-		return is_the_text(r) ? 0 : -EILSEQ;
-	err = store_text_fetch(r->text_file, &c->text, &r->bytes);
+		return 0;
+	err = r->has_sha256 ?
+	      store_text_read(r->text_file, &c->text, &r->bytes) :
+	      store_text_fetch(r->text_file, &c->text, &r->bytes);
 	r->text = c->text;
 	return err;
+}
+
+/* What two threads do with the text. */
+struct reading {
+	struct compiler *c;
+	const struct config_tech *tech;
+	const struct interp_dialect *dialect;
+	bool is_whole;
+	int err;
+};
+
+static void reading_check(void *arg)
+{
+	struct reading *r = arg;
+
+	r->is_whole = is_the_text(&r->c->request);
+}
+
+static void reading_compile(void *arg)
+{
+	struct reading *r = arg;
+
+	r->err = compiler_text(r->c, r->tech, r->dialect);
+}
+
+/* The hash of a long text takes a fifth as long as all that is made of the
+ * text.  Until it is known, nothing of that is given away. */
+static int check_and_compile(struct reading *r)
+{
+	if (r->c->request.bytes < LONG_BYTES || both_processors() < 2) {
+		reading_check(r);
+		if (r->is_whole)
+			reading_compile(r);
+	} else {
+		both(reading_compile, reading_check, r);
+	}
+	if (r->is_whole)
+		return r->err;
+	compiler_forget(&r->c->result);
+	return -EILSEQ;
 }
 
 /* Made before, of the same table and dialect. */
@@ -215,7 +258,9 @@ static int compiler_make(struct compiler *c, const struct config_tech *tech,
 	} else {
 		err = take_text(c);
 		if (err == 0)
-			err = compiler_text(c, tech, d->use);
+			err = check_and_compile(&(struct reading) {
+				.c = c, .tech = tech, .dialect = d->use,
+			});
 	}
 	return err;
 }

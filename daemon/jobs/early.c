@@ -68,25 +68,39 @@ static void on_made(void *arg, struct compiler_result *r)
 	copy_ahead(j, a->made->block);
 }
 
-/* It is compiled when two looks have seen the same. */
+/* It is compiled at the first look, and after that when two looks have seen the
+ * same: who jogs to a place in steps is not followed. */
 static void look(struct jobs *j)
 {
 	struct early *a = &j->early;
 	struct compiler_request r;
 	struct store_job job;
+	bool stands = true;
 
 	if (store_interrupted(j->store, &job) < 0 ||
 	    load_request(j, &job, &r) < 0 || !*r.text_file) {
 		forget(j);
-	} else if (!is_same(a, &job, &r)) {
+		return;
+	}
+	if (!is_same(a, &job, &r)) {
 		forget(j);
 		a->job = job;
 		memcpy(&a->request, &r, sizeof(r));
 		a->request.name = a->job.name;
-	} else if (!a->tried) {
+		stands = a->looked != job.n;
+		a->looked = job.n;
+	}
+	if (stands && !a->tried) {
 		a->tried = true;
 		compiler_start(&a->compile, j->event, &a->request, on_made, j);
 	}
+}
+
+/* What is made before an axis is homed no resume would take. */
+static bool is_worth_it(const struct jobs *j)
+{
+	return j->link.snap.state == SHM_IDLE &&
+	       !(j->link.snap.unhomed & j->config->axes.present);
 }
 
 void early_step(struct jobs *j, int64_t now_us)
@@ -95,7 +109,7 @@ void early_step(struct jobs *j, int64_t now_us)
 
 	if (a->compile || now_us < a->look_us)
 		return;
-	if (*j->interrupted && j->link.snap.state == SHM_IDLE) {
+	if (*j->interrupted && is_worth_it(j)) {
 		a->look_us = now_us + LOOK_US;
 		look(j);
 	} else if (!*j->interrupted && (j->queue.job.n || !j->queue.behind)) {

@@ -4,10 +4,10 @@
  * resumed
  *
  * After a power cut the axes are looked at and homed, which takes longer than
- * to compile millions of lines.  So as soon as the axes stand, the rest of the
- * job is compiled as a resume would do it.  A resume takes what was made if
- * it asks for the same, byte for byte, and if technology table and dialect
- * are still the same.  Otherwise it compiles.
+ * to compile millions of lines.  So as soon as no axis has to be homed any
+ * more, the rest of the job is compiled as a resume would do it.  A resume
+ * takes what was made if it asks for the same, byte for byte, and if technology
+ * table and dialect are still the same.  Otherwise it compiles.
  *
  * At most one program is kept, in memory: a file would have to be trusted, and
  * is several times as long as the text that has to be read otherwise.  edmd is
@@ -32,6 +32,7 @@ struct early {
 	struct compiler *compile;	/* under way; else NULL */
 	struct compiler_result *made;	/* on the heap; NULL: there is none */
 	int64_t look_us;		/* not before */
+	uint32_t looked;		/* the job that was looked at last */
 };
 
 /** early_step() - compile the interrupted job, if there is one and the machine

@@ -15,6 +15,9 @@
 #include <string.h>
 
 #define MISSING_US	500000		/* time that edmd gets to come back */
+#define ANEW_US		100000		/* one that is new takes a program up
+					 * before its first cycle or never; its
+					 * events are read meanwhile */
 #define AGAIN_US	1000000
 
 bool queue_is_leaving(const struct queue *q)
@@ -168,6 +171,7 @@ void queue_drop(struct jobs *j, bool again)
 	q->depth_mm = 0;
 	q->ended = SHM_OUTCOME_NONE;
 	q->missing_us = 0;
+	q->anew = false;
 	queue_recount(j);
 }
 
@@ -179,6 +183,7 @@ void queue_attach(struct jobs *j)
 	q->missing_us = 0;
 	q->again_us = 0;
 	settle_ended(j);
+	q->anew = anew && q->job.n;
 	if (!anew)
 		return;
 	store_set_number(j->store, "instance", j->link.instance);
@@ -396,7 +401,8 @@ static void follow_missing(struct jobs *j, int64_t now_us)
 		follow_ended(j, q->ended);
 	} else if (!q->missing_us) {
 		q->missing_us = now_us;
-	} else if (now_us - q->missing_us > MISSING_US && !q->loading) {
+	} else if (now_us - q->missing_us > (q->anew ? ANEW_US : MISSING_US) &&
+		   !q->loading) {
 		if (may_have_begun(j))
 			interrupt_take(j);
 		else

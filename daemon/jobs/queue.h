@@ -41,6 +41,7 @@ struct queue {
 	uint64_t load_id;		/* ... of this id */
 	bool asked;			/* START or UNLOAD is under way */
 	int64_t missing_us;		/* since when edmd does not have it */
+	bool anew;			/* edmd is, and never had it */
 	uint32_t fault_told;		/* a fault without a job that was
 					 * reported */
 	int64_t again_us;		/* not before this time: it was

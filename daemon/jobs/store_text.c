@@ -136,17 +136,24 @@ static bool is_whole(const char *path, const char *text, size_t bytes)
 	       strcmp(path + strlen(path) - HEX, hex) == 0;
 }
 
-int store_text_fetch(const char *path, char **ret, size_t *ret_bytes)
+int store_text_read(const char *path, char **ret, size_t *ret_bytes)
 {
 	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW |
 			    O_NONBLOCK);
-	char *text = NULL;
 	int err;
 
 	if (fd < 0)
 		return errno == ENOENT || errno == ELOOP ? -EILSEQ : -errno;
-	err = read_all(fd, &text, ret_bytes);
+	err = read_all(fd, ret, ret_bytes);
 	close(fd);
+	return err;
+}
+
+int store_text_fetch(const char *path, char **ret, size_t *ret_bytes)
+{
+	char *text = NULL;
+	const int err = store_text_read(path, &text, ret_bytes);
+
 	if (err < 0)
 		return err;
 	if (!is_whole(path, text, *ret_bytes)) {

@@ -40,6 +40,10 @@ int store_text_keep(const char *path, const char *text, size_t bytes);
  */
 int store_text_fetch(const char *path, char **ret, size_t *ret_bytes);
 
+/** store_text_read() - the same, but for the hash: who reads has to compare it
+ *  before anything is done with the text.  Any. */
+int store_text_read(const char *path, char **ret, size_t *ret_bytes);
+
 /** store_text_drop() - remove those of these hashes, in hex with a blank
  *  between them, that no job has any more.  That of the store. */
 void store_text_drop(struct store *s, const char *sha256);

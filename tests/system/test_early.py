@@ -109,6 +109,23 @@ def test_the_axes_moved_meanwhile(shop):
     has_ended(m, c)
 
 
+def test_nothing_is_made_before_the_axes_are_homed(homing):
+    m, c = homing, homing.client
+    m.start()
+    assert m.ctl("home").returncode == 0
+    assert c.submit(CUT, "cut").code == 0
+    c.job_where("cut", "ready")
+    assert c.ask("start").code == 0
+    c.status_where(lambda s: s.job_state == "running" and s.place_mm > 1, 20)
+    die(m)
+    m.start()
+    c.status_where(lambda s: s.interrupted == "cut", 10)
+    c.hear(2)                           # some looks
+    assert said(m, READY) + said(m, FAILED) == 0
+    assert m.ctl("home").returncode == 0
+    rig.until(lambda: said(m, READY) == 1, 20)
+
+
 @pytest.mark.parametrize("name, text", [
     ("own.ini", DIALECT + "[words]\nG21 = inches\n"),
     ("own.tech", TABLE.replace("40", "41")),

@@ -149,6 +149,7 @@ def test_a_job_is_removed_though_the_disk_is_full(failing):
     m.start_jobs()
     c.status_where(lambda s: s.daemon == "ok")
     assert c.job("second")["state"] == "stopped"
+    c.job_where("third", "ready")       # not while it is being loaded
     assert c.ask("remove", "third").reason == "removed"
 
 
@@ -300,7 +301,9 @@ def test_a_long_text_that_is_damaged_or_foreign_is_not_cut(machine):
     m, c = machine, machine.client
     other = LONG_TEXT.replace(b"X0.2", b"X0.9")
     assert len(other) == len(LONG_TEXT) and other != LONG_TEXT
-    for name, bad in (("other", other), ("cut", LONG_TEXT[:-1])):
+    wrong = LONG_TEXT.replace(b"X0.2", b"X0.?")     # no program at all
+    for name, bad in (("other", other), ("cut", LONG_TEXT[:-1]),
+                      ("wrong", wrong)):
         # Only the first of the queue is compiled already.
         assert c.submit(QUICK_JOB, f"before-{name}", hold=True).code == 0
         assert c.submit(LONG_TEXT, name).code == 0

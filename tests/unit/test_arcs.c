@@ -355,14 +355,14 @@ static void a_damaged_block_never_leads_astray(void **st)
 		struct made m = random_program(INTERP_CENTRED + (int)(seed % 4),
 					       &s);
 		struct interp_program_head *h = m.block;
+		const uint32_t nruns = h->nruns;
+		int32_t *runs = (void *)((char *)m.block + h->runs_at);
 
 		print_on_failure("seed", seed);
 		damage(&m, &s);
 		/* The runs are where it hurts; be sure to meet them. */
-		if (m.bytes > h->runs_at && h->nruns > 0 &&
-		    m.p.runs == (const void *)((char *)m.block + h->runs_at))
-			((int32_t *)(void *)((char *)m.block + h->runs_at))
-				[rnd(&s) % h->nruns % 4] = (int32_t)rnd(&s);
+		if (nruns > 0)
+			runs[rnd(&s) % nruns % 4] = (int32_t)rnd(&s);
 		walk_damaged(&m);
 		unmake(&m);
 	}

@@ -463,11 +463,13 @@ static double slowest(double mm, double turn, double deg_mm)
 
 static void true_corners_are_as_slow_as_between_long_lines(void **st)
 {
-	static const double turns[] = { 0.5, 1, 1.5707963, 2.5, 3.1415926 };
+	static const double turns[] = {
+		0.05, 0.1, 0.2, 0.3, 0.5, 1, 1.5707963, 2.5, 3.1415926
+	};
 
 	(void)st;
 	for (int i = 0; i < 4; i++) {
-		for (int k = 0; k < 5; k++)
+		for (int k = 0; k < 9; k++)
 			assert_true(slowest(steps_mm[i], turns[k], 0) <=
 				    1.05 * slowest(1, turns[k], 0));
 		/* Steps of an axis beside the path. */
@@ -475,6 +477,47 @@ static void true_corners_are_as_slow_as_between_long_lines(void **st)
 			assert_true(slowest(steps_mm[i], 0, deg) <=
 				    1.05 * slowest(1, 0, deg));
 	}
+}
+
+/* Nodes as slow as a way back, where the way goes back before it turns. */
+static int turned_back(double mm, double turn, double back)
+{
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	const int there = (int)lround((1 + back) / mm);
+	const int n = there + (int)lround(back / mm);
+	const double most = 1.05 * slowest(1, M_PI, 0);
+	double end[INTERP_NAXES] = { 0 };
+	struct made m;
+	int ret = 0;
+
+	for (int i = 1; i <= n + (int)lround(1 / mm); i++) {
+		const int along = i <= there ? i : 2 * there - (i < n ? i : n);
+		const double t = i > n ? (i - n) * mm : 0;
+
+		end[INTERP_X] = rounded(along * mm + t * cos(turn), 3);
+		end[INTERP_Y] = rounded(t * sin(turn), 3);
+		dense_line(b, end, true);
+	}
+	m = finish(b);
+	for (uint32_t i = 1; i + 2 < m.p.head->nsegs; i++)
+		ret += (double)m.p.segs[i].node_mm_s <= most;
+	unmake(&m);
+	return ret;
+}
+
+static void a_way_back_is_no_shallow_corner(void **st)
+{
+	static const double turns[] = { 0.02, 0.05, 0.1, 0.2, 0.3 };
+
+	(void)st;
+	for (int i = 0; i < 4; i++)
+		for (int k = 0; k < 5; k++)
+			for (double back = 0.02; back < 0.2; back *= 1.5) {
+				const double mm = steps_mm[i];
+
+				assert_true(turned_back(mm, turns[k],
+							fmax(back, mm)) >= 2);
+			}
 }
 
 /* -- Corners below the rounding -------------------------------------------- */
@@ -550,6 +593,7 @@ int main(void)
 		cmocka_unit_test(a_corner_jolts_an_axis_no_more_in_short_lines),
 		cmocka_unit_test(in_retracts_three_decimals_are_as_quick),
 		cmocka_unit_test(true_corners_are_as_slow_as_between_long_lines),
+		cmocka_unit_test(a_way_back_is_no_shallow_corner),
 		cmocka_unit_test(a_corner_below_the_rounding_shows_the_bend),
 	};
 

@@ -255,6 +255,10 @@ void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 		dda_marks(arc, p->runs.start, runs);
 		return;
 	}
+	if (arc->nruns == 0) {
+		circle_keep_places(arc, p->runs.start, p->runs.end, runs);
+		return;
+	}
 	circle_plan_runs(arc, &p->runs, runs, arc->nruns);
 	circle_enter(&k, arc, p->runs.start, p->runs.end, false);
 	k.runs = runs;
@@ -266,7 +270,8 @@ void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 uint64_t build_arc_kept(const struct build_arc *p)
 {
 	return strategy(p)->accumulates ? p->arc.nruns :
-					  circle_kept(p->arc.nruns);
+	       p->arc.nruns ? circle_kept(p->arc.nruns) :
+	       (uint64_t)circle_places(&p->arc) * CIRCLE_PLACE;
 }
 
 /* Around a single pulse only comparison finds a way, whatever the strategy

@@ -8,17 +8,16 @@
 #include <errno.h>
 #include <stdlib.h>
 
-/* The runs of an arc that stores them. */
+/* The runs of an arc that stores them, and what a seek begins at. */
 static int runs_add(struct interp_build *b, const struct build_arc *plan,
 		    struct interp_arc *arc)
 {
 	struct table *t = &b->runs;
-	uint64_t n;
+	const uint64_t n = build_arc_kept(plan);
 
 	arc->run_at = (uint32_t)t->n;
-	if (arc->nruns == 0)
+	if (n == 0)
 		return 0;
-	n = build_arc_kept(plan);
 	if (build_table_room(t, n) < 0)
 		return -ENOMEM;
 	build_arc_runs(plan, arc, (int32_t *)t->at + t->n);

@@ -138,6 +138,8 @@ static int side_plan(struct build_pair *p, int i, double *ret_mm,
 		return side_line(p, i, &p->couple.side[i], ret_mm, diag);
 	p->near_edge |= plan.near_edge;
 	p->couple.side[i] = plan.arc;
+	memcpy(p->start[i], plan.runs.start, sizeof(p->start[i]));
+	memcpy(p->end[i], plan.runs.end, sizeof(p->end[i]));
 	*ret_mm = plan.length_mm;
 	if (at_once(p) && plan.ticks > p->ticks)
 		p->ticks = plan.ticks;

@@ -22,6 +22,8 @@ struct build_pair {
 	/* Out. */
 	bool near_edge;		/* of the travel: ask build_edge_look() */
 	struct interp_couple couple;
+	int64_t start[2][2], end[2][2];	/* of each arc, from its centre,
+					 * pulses */
 	uint32_t ticks;
 	uint64_t *bits;		/* (ticks + 63) / 64 words, or NULL; free() */
 	double length_mm, fed_mm, feed_max_mm_s;

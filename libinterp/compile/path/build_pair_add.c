@@ -6,6 +6,7 @@
 #include "path/build_pair.h"
 #include "path/build_edge.h"
 #include "path/build_limits.h"
+#include "pulse/pulse.h"
 #include "pulse/strategy.h"
 
 #include <errno.h>
@@ -14,6 +15,24 @@
 
 #define XY	(1u << INTERP_X | 1u << INTERP_Y)
 #define UV	(1u << INTERP_U | 1u << INTERP_V)
+
+/* What a seek along contour @i begins at. */
+static int places_add(struct interp_build *b, const struct build_pair *p, int i,
+		      struct interp_arc *arc)
+{
+	struct table *t = &b->runs;
+	const size_t n = (size_t)circle_places(arc) * CIRCLE_PLACE;
+
+	arc->run_at = (uint32_t)t->n;
+	if (n == 0)
+		return 0;
+	if (build_table_room(t, n) < 0)
+		return -ENOMEM;
+	circle_keep_places(arc, p->start[i], p->end[i],
+			   (int32_t *)t->at + t->n);
+	t->n += n;
+	return t->n > UINT32_MAX ? -ENOMEM : 0;
+}
 
 /* Add the couple and its bits to the tables. */
 static int couple_add(struct interp_build *b, const struct build_pair *p)
@@ -25,6 +44,9 @@ static int couple_add(struct interp_build *b, const struct build_pair *p)
 		return -ENOMEM;
 	*c = p->couple;
 	c->bits_at = b->bits.n;
+	for (int i = 0; i < 2; i++)
+		if (places_add(b, p, i, &c->side[i]) < 0)
+			return -ENOMEM;
 	for (size_t i = 0; i < words; i++) {
 		uint64_t *w = build_table_add(&b->bits);
 

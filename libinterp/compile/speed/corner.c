@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* corner.c - nodes beside a corner, whose windows show it */
 #include "speed/pass.h"
+#include <stdio.h>
+#include <stdlib.h>
 
 /* A node is a corner if those a chord away from it are so much faster. */
 #define CORNER		2
@@ -8,16 +10,6 @@
 /* The windows of a node beside a corner may show it as little slower than the
  * corner itself, or as slower: they see a rounding more of it. */
 #define ALIKE		1.25f
-
-/* The next node at least @mm from node @i, forward if @way is 1, back if -1. */
-static uint32_t away(const struct pass *w, uint32_t i, int way, double mm)
-{
-	uint32_t k = i;
-
-	while (k > w->run && k < w->run_end && pass_from_to(w, i, k) < mm)
-		k += (uint32_t)way;
-	return k;
-}
 
 /* The square of what both lines turn by at node @i. */
 static double turn_of(const struct pass *w, uint32_t i)
@@ -67,7 +59,7 @@ static bool is_corner(const struct pass *w, uint32_t i)
 	const float v = CORNER * w->segs[i - 1].node_mm_s;
 
 	for (int way = -1; way <= 1; way += 2) {
-		const uint32_t k = away(w, i, way, w->near.mm);
+		const uint32_t k = pass_away(w, i, way, w->near.mm);
 
 		if (k == w->run || k >= w->run_end ||
 		    !(w->segs[k - 1].node_mm_s >= v))
@@ -106,21 +98,29 @@ static double over_mm_s(struct pass *w, uint32_t at, uint32_t i)
 	return first < i && !(first < at && at <= to) ? v : INFINITY;
 }
 
-/* If it is faster now, beside the corner @at. */
-static void raise_node(struct pass *w, uint32_t at, uint32_t i)
+/* One side of a corner. */
+struct beside {
+	uint32_t at;			/* the corner */
+	int way;			/* 1: behind it, -1: before it */
+	double mm;			/* so far nodes see it */
+	float most_mm_s;		/* they are no faster */
+};
+
+/* If it is faster now. */
+static void raise_node(struct pass *w, const struct beside *k, uint32_t i)
 {
 	struct interp_seg *s = &w->segs[i];
 	struct headings h[2];
 	float most;
 	double v;
 
-	for (uint32_t k = 0; k < 2; k++) {
-		heading_of(&w->ways, i - 1 + k, &h[k]);
-		w->a_own_mm_s2[k] = (double)w->segs[i - 1 + k].a_mm_s2;
+	for (uint32_t n = 0; n < 2; n++) {
+		heading_of(&w->ways, i - 1 + n, &h[n]);
+		w->a_own_mm_s2[n] = (double)w->segs[i - 1 + n].a_mm_s2;
 	}
-	v = smaller(over_mm_s(w, at, i),
+	v = smaller(over_mm_s(w, k->at, i),
 		    pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first));
-	most = isinf(v) ? INFINITY : pass_level(w, v);
+	most = pass_least(k->most_mm_s, pass_level(w, v));
 	if (most <= s[-1].node_mm_s)
 		return;
 	s[-1].node_mm_s = most;
@@ -141,37 +141,57 @@ static void look_between(struct pass *w, uint32_t run, uint32_t i,
 	}
 }
 
+/* Those beside the corner on this side. */
+static void raise_side(const struct pass *w, struct pass *again,
+		       const struct beside *k)
+{
+	const uint32_t at = k->at;
+	uint32_t i = at + (uint32_t)k->way;
+
+	while (i > w->run && i < w->run_end &&
+	       pass_from_to(w, at, i) < k->mm && is_among(w, i)) {
+		const uint32_t far = pass_away(w, i, k->way,
+					       pass_from_to(w, at, i));
+
+		look_between(again, k->way > 0 ? at : far, i,
+			     k->way > 0 ? far : at);
+		raise_node(again, k, i);
+		i += (uint32_t)k->way;
+	}
+}
+
 /*
  * The windows of nodes beside a corner show the corner, too.  But only the
  * corner itself has to be passed slowly: a move that meets a slow place in
  * front of a slower one brakes in steps.  So windows end in the corner, and are
  * as long on the other side of the node.  What bends more slowly than that does
- * not count so near to a corner: no move is fast enough there.
+ * not count so near to a corner: no move is fast enough there.  A shallow
+ * corner does not slow moves down so much: there, no node is faster than the
+ * next one that does not see it.
  */
-void pass_beside_corner(struct pass *w)
+void pass_beside_corner(struct pass *w, uint32_t known)
 {
-	struct pass again;
+	const double far = pass_sees_mm(w), mm = w->windows[0].mm;
 	uint32_t at = w->slow;
+	struct pass again;
+	struct lone lone;
+	bool sharp, alone;
 
 	w->slow = 0;
-	if (at == 0 || !is_corner(w, at))
+	if (at == 0)
 		return;
-	at = sharpest(w, at);
+	sharp = is_corner(w, at);
+	alone = pass_lone(w, at, known, &lone);
+	if (!sharp && !alone)
+		return;
+	at = alone ? lone.at : sharpest(w, at);
+	if (alone)
+		w->segs[at - 1].node_mm_s = pass_level(w, lone.mm_s);
 	again = *w;
-	for (int way = -1; way <= 1; way += 2) {
-		const double mm = pass_sees_mm(w);
-		uint32_t i = at + (uint32_t)way;
-
-		while (i > w->run && i < w->run_end &&
-		       pass_from_to(w, at, i) < mm && is_among(w, i)) {
-			const uint32_t far = away(w, i, way,
-						  pass_from_to(w, at, i));
-
-			look_between(&again, way > 0 ? at : far, i,
-				     way > 0 ? far : at);
-			raise_node(&again, at, i);
-			i += (uint32_t)way;
-		}
-	}
+	for (int n = 0; n < 2; n++)
+		raise_side(w, &again, &(struct beside) {
+			at, 2 * n - 1, sharp ? far : mm,
+			sharp ? INFINITY : lone.beyond_mm_s[n],
+		});
 	w->bent_nodes = again.bent_nodes;
 }

@@ -131,7 +131,7 @@ static float level(const struct pass *w, double v_mm_s)
 
 float pass_level(const struct pass *w, double v_mm_s)
 {
-	return level(w, v_mm_s);
+	return v_mm_s < INFINITY ? level(w, v_mm_s) : INFINITY;
 }
 
 /* So many limits that are near to each other are a plateau. */
@@ -144,7 +144,8 @@ float pass_level(const struct pass *w, double v_mm_s)
  * is lower still, its coarse level stands once.  So a way that becomes slower
  * and slower has no more levels than it would have without plateaus, and seen
  * from its other end twice as many.  Single limits far from it, as those of
- * lines that a rounding made longer, do not end it.
+ * lines that a rounding made longer, do not end it.  But a move is no faster
+ * than the low ones: where these are a third and more, they are the plateau.
  */
 static float plateau_level(struct pass *w, double v_mm_s)
 {
@@ -154,15 +155,21 @@ static float plateau_level(struct pass *w, double v_mm_s)
 
 	if (v_mm_s >= low && v_mm_s < PLATEAU_HIGH * low) {
 		p->far = 0;
+		p->below -= p->below > 0;
 		return ++p->near > PLATEAU ? p->low_mm_s :
 					     pass_least(most, p->low_mm_s);
 	}
-	if (v_mm_s < low && PLATEAU_HIGH * v_mm_s >= low)
-		p->far = 0;
-	else if (++p->far <= PLATEAU)
-		return most;
-	else
-		p->near = p->far = 0;
+	if (v_mm_s < low && PLATEAU_HIGH * v_mm_s >= low) {
+		p->far = p->below = 0;
+	} else {
+		if (v_mm_s < low)
+			p->below += 2;
+		else
+			p->below -= p->below > 0;
+		if (++p->far <= PLATEAU && p->below <= 2 * PLATEAU)
+			return most;
+		p->near = p->far = p->below = 0;
+	}
 	p->low_mm_s = down_to(v_mm_s, FINE);
 	return most;
 }
@@ -313,8 +320,8 @@ COLUMNS_INLINE void limit_seg(struct pass *w, uint32_t i,
 	if (s->ticks >= MANY_POINTS)
 		v = smaller(v, w->points_per_s * s->length_mm /
 				   (double)s->ticks);
-	s->feed_max_mm_s = near_all(n) == near_usual(n) ? level(w, v) :
-							  plateau_level(w, v);
+	s->feed_max_mm_s = near_all(n) == w->ways.xyz ? level(w, v) :
+							plateau_level(w, v);
 	if (s->flags & INTERP_SEG_RAPID)
 		s->feed_mm_s = s->feed_max_mm_s;
 }
@@ -404,12 +411,12 @@ static inline bool is_among_long(const struct pass *w, uint32_t i)
 	return w->segs[i - 1].length_mm >= mm && w->segs[i].length_mm >= mm;
 }
 
-static inline void beside_slow(struct pass *w)
+static inline void beside_slow(struct pass *w, uint32_t known)
 {
 	if (is_among_long(w, w->slow))
 		w->slow = 0;
 	else
-		pass_beside_corner(w);
+		pass_beside_corner(w, known);
 }
 
 /* The node in front of segment @i is known. */
@@ -418,7 +425,7 @@ static inline void note_slow(struct pass *w, uint32_t i)
 	const struct interp_seg *s = &w->segs[i];
 
 	if (w->slow > 0 && pass_from_to(w, w->slow, i) >= pass_sees_mm(w))
-		beside_slow(w);
+		beside_slow(w, i);
 	if (s[-1].node_mm_s < s->feed_max_mm_s &&
 	    (w->slow == 0 || s[-1].node_mm_s < w->segs[w->slow - 1].node_mm_s))
 		w->slow = i;
@@ -435,7 +442,7 @@ static void look_for_run_end(struct pass *w, uint32_t known)
 
 static void next_run(struct pass *w, uint32_t i, uint32_t known)
 {
-	pass_beside_corner(w);
+	pass_beside_corner(w, i);
 	w->run = i;
 	w->ahead = heading_run(&w->ways, i);
 	look_for_run_end(w, known);
@@ -523,7 +530,7 @@ void pass_finish(struct pass *w, struct interp_bends *bends)
 	w->segs[0].node_mm_s = INFINITY;
 	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
 	pass_walk(w, w->end, w->end + 1);
-	pass_beside_corner(w);
+	pass_beside_corner(w, w->end);
 	pass_bends(w, bends);
 	pass_soften(w);
 	pass_stretches(w);

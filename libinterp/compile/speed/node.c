@@ -346,6 +346,15 @@ COLUMNS_INLINE double around(struct pass *w, struct change *c, uint32_t both,
 	return smaller(corner(w, c, both, n), step(w, c->d, near_all(n), n));
 }
 
+double pass_corner(struct pass *w, const struct chord *a,
+		   const struct chord *b)
+{
+	struct change c = { .a = &a->h, .b = &b->h,
+			    .per_mm = a->per_mm + b->per_mm };
+
+	return around(w, &c, a->h.along, w->n);
+}
+
 /* How much column rates change from segment @i to the next one; by nothing if
  * they are no lines of this run. */
 static void turn_behind(const struct pass *w, uint32_t i,

@@ -126,6 +126,8 @@ struct dip {
 struct plateau {
 	float low_mm_s;
 	uint32_t near, far;		/* that many of late */
+	uint32_t below;			/* far below: 2 for each, less 1 for
+					 * each other one */
 };
 
 struct pass {
@@ -348,9 +350,38 @@ static inline double pass_sees_mm(const struct pass *w)
 	return PASS_SEES * w->windows[0].mm;
 }
 
+/** pass_away() - the next node at least @mm from node @i in its run, forward if
+ *  @way is 1, back if -1. */
+static inline uint32_t pass_away(const struct pass *w, uint32_t i, int way,
+				 double mm)
+{
+	uint32_t k = i;
+
+	while (k > w->run && k < w->run_end && pass_from_to(w, i, k) < mm)
+		k += (uint32_t)way;
+	return k;
+}
+
+/* A corner between two lines, each of short ones. */
+struct lone {
+	uint32_t at;			/* its node */
+	double mm_s;
+	float beyond_mm_s[2];		/* of the next nodes that do not see it,
+					 * behind and ahead */
+};
+
+/** pass_lone() - is there one at the slow node @at, or near to it?  Nodes up to
+ *  @known are known. */
+bool pass_lone(struct pass *w, uint32_t at, uint32_t known, struct lone *ret);
+
+/** pass_corner() - the greatest speed from chord @a to chord @b, which have the
+ *  same columns. */
+double pass_corner(struct pass *w, const struct chord *a,
+		   const struct chord *b);
+
 /** pass_beside_corner() - if the slowest node of late is a corner, the nodes
- *  beside it are no slower by it. */
-void pass_beside_corner(struct pass *w);
+ *  beside it are no slower by it.  Nodes up to @known are known. */
+void pass_beside_corner(struct pass *w, uint32_t known);
 
 /**
  * pass_curve() - the greatest speed over the node in front of segment @i on the

@@ -11,7 +11,8 @@
  * The measure is the swept area.  An outward pulse adds the `in` at which it is
  * made, an inward one the `out`.  Their difference is that of the product
  * in*out, and `in` in a row is the greatest inside the circle: so the area is
- * twice the sum over the rows (circle_rows.c), less that difference.
+ * twice the sum over the rows (circle_rows.c), less that difference.  The rows
+ * from the start are many, so the program keeps the measure at some places.
  */
 #include "pulse/pair.h"
 #include "pulse/pulse.h"
@@ -27,6 +28,11 @@ struct seek {
 	int64_t area;			/* twice the one swept so far */
 	bool measures;			/* it is asked for */
 };
+
+static int64_t least(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
+}
 
 /* Go to this place in the same quadrant. */
 static void stretch(struct seek *s, int64_t in, int64_t out)
@@ -119,6 +125,45 @@ static int64_t by_comparison(struct interp_circle *k, int64_t ticks,
 	return s.area;
 }
 
+/* The measure behind so many places of the program. */
+static int64_t kept(const struct interp_circle *k, int64_t places)
+{
+	const int32_t *at = k->places + (places - 1) * CIRCLE_PLACE;
+
+	return (int64_t)((uint64_t)(uint32_t)at[1] << 32 | (uint32_t)at[0]);
+}
+
+/* From the last place that the program keeps.  Return: the measure. */
+static int64_t by_places(struct interp_circle *k, int64_t ticks)
+{
+	const int64_t n = least(ticks / CIRCLE_PLACE_TICKS, k->nplaces);
+	const int64_t before = n * CIRCLE_PLACE_TICKS;
+	const int64_t measure = n > 0 ? kept(k, n) : 0;
+	int64_t area;
+
+	if (measure < 0 || measure > INT64_MAX / 2 ||
+	    (n > 0 && by_comparison(k, before, false) < 0))
+		return -1;
+	area = by_comparison(k, ticks - before, true);
+	return area < 0 ? -1 : measure + area + ticks - before;
+}
+
+void circle_keep_places(const struct interp_arc *arc, const int64_t start[2],
+			const int64_t end[2], int32_t *ret)
+{
+	struct interp_circle k;
+	int64_t measure = 0;
+
+	circle_enter(&k, arc, start, end, false);
+	for (uint32_t i = circle_places(arc); i > 0; i--) {
+		measure += by_comparison(&k, CIRCLE_PLACE_TICKS, true) +
+			   CIRCLE_PLACE_TICKS;
+		ret[0] = (int32_t)(uint32_t)measure;
+		ret[1] = (int32_t)(measure >> 32);
+		ret += CIRCLE_PLACE;
+	}
+}
+
 static int64_t one_by_one(struct interp_circle *k, int64_t ticks)
 {
 	int64_t measure = 0;
@@ -140,11 +185,6 @@ static int64_t row(struct interp_circle *k, int64_t dx, int64_t dy, int64_t n)
 	k->y += n * dy;
 	k->tick += (uint32_t)n;
 	return n * ((area > 0 ? area : 0) + 1);
-}
-
-static int64_t least(int64_t a, int64_t b)
-{
-	return a < b ? a : b;
 }
 
 static int64_t along_tail(struct interp_circle *k, int64_t ticks)
@@ -271,11 +311,12 @@ static int64_t go_to(struct interp_circle *k, uint32_t tick, bool measures)
 		return along_runs(k, tick);
 	if (k->meet < SMALL)
 		return one_by_one(k, tick);
-	measure = by_comparison(k, compared, measures);
+	measure = measures ? by_places(k, compared) :
+			     by_comparison(k, compared, false);
 	if (measure < 0 || tick == compared)
-		return measure < 0 ? -1 : measure + compared;
+		return measure;
 	tail = along_tail(k, tick - compared);
-	return tail < 0 ? -1 : measure + compared + tail;
+	return tail < 0 ? -1 : measure + tail;
 }
 
 int64_t circle_seek(struct interp_circle *k, uint32_t tick)

@@ -54,6 +54,19 @@ static bool circle_runs_set(struct interp_cursor *c, bool at_end)
 	return k->runs[k->run] != 0;
 }
 
+bool pulse_circle_places(const struct interp_cursor *c,
+			 const struct interp_arc *arc, struct interp_circle *k)
+{
+	const uint64_t n = (uint64_t)circle_places(arc) * CIRCLE_PLACE;
+	const uint32_t all = c->p.head->nruns;
+
+	if (n > 0 && (n > all || arc->run_at > all - n))
+		return false;
+	k->places = n > 0 ? c->p.runs + arc->run_at : NULL;
+	k->nplaces = circle_places(arc);
+	return true;
+}
+
 bool pulse_circle_set(struct interp_cursor *c, bool at_end)
 {
 	const struct interp_arc *arc = &c->arc;
@@ -64,7 +77,8 @@ bool pulse_circle_set(struct interp_cursor *c, bool at_end)
 	pulse_circle_node(c, false, start);
 	pulse_circle_node(c, true, end);
 	return circle_enter(&c->circle, arc, start, end, at_end) &&
-	       (arc->nruns == 0 || circle_runs_set(c, at_end));
+	       (arc->nruns ? circle_runs_set(c, at_end) :
+			     pulse_circle_places(c, arc, &c->circle));
 }
 
 static bool pulse_circle_enter(struct interp_cursor *c, bool at_end)

@@ -300,6 +300,25 @@ static inline uint64_t circle_kept(uint32_t nruns)
 /** circle_marks() - walk all runs of @k and write the marks, for the builder.
  *  circle_seek.c. */
 void circle_marks(struct interp_circle *k, int32_t *ret);
+/* By comparison, the program keeps the measure behind every so many pulses, in
+ * so many numbers, the lower half first: a seek begins there. */
+#define CIRCLE_PLACE_TICKS	1024
+#define CIRCLE_PLACE		2
+/** circle_places() - how many of these it keeps of @arc. */
+static inline uint32_t circle_places(const struct interp_arc *arc)
+{
+	return arc->nruns ? 0 : arc->tail / CIRCLE_PLACE_TICKS;
+}
+/** circle_keep_places() - write them, for the builder.  circle_seek.c. */
+void circle_keep_places(const struct interp_arc *arc, const int64_t start[2],
+			const int64_t end[2], int32_t *ret);
+/**
+ * pulse_circle_places() - @k, which walks along @arc, is to know them.
+ *
+ * Return: false if the program does not have them.
+ */
+bool pulse_circle_places(const struct interp_cursor *c,
+			 const struct interp_arc *arc, struct interp_circle *k);
 /** circle_smallest_milli() - @milli, or more if the circle needs more. */
 uint32_t circle_smallest_milli(int64_t r2, uint32_t milli);
 

@@ -227,7 +227,8 @@ static bool pair_enter(struct interp_cursor *c, bool at_end)
 		c->arc = *arc;
 		pulse_circle_node(c, false, start);
 		pulse_circle_node(c, true, end);
-		if (!side_enter(&c->side[i], arc, start, end, at_end))
+		if (!side_enter(&c->side[i], arc, start, end, at_end) ||
+		    !pulse_circle_places(c, arc, &c->side[i].circle))
 			return false;
 		side_stand(c, i, at_end ? arc->measure : 0);
 		c->whole += share_of(c, i, arc->measure);

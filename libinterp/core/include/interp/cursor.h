@@ -79,6 +79,9 @@ struct interp_circle {
 	uint32_t crossings;		/* in the whole arc */
 	int8_t ccw;			/* +1 counter-clockwise, -1 clockwise */
 	int8_t quad;			/* quadrant 0 ... 3 being walked */
+	const int32_t *places;		/* by comparison: the measure at some
+					 * places */
+	uint32_t nplaces;
 	/* Along stored runs: */
 	const int32_t *runs;		/* NULL: by comparison */
 	uint32_t nruns, run;		/* run being walked */

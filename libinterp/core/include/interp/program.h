@@ -52,7 +52,7 @@
 #define INTERP_FAR_BESIDE	1e4
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	11
+#define INTERP_PROGRAM_VERSION	12
 
 /*
  * How three and more axes make a line when they move one at a time.
@@ -193,7 +193,8 @@ struct interp_arc {
 					 * end */
 	uint32_t crossings;		/* of the axes through the centre */
 	uint32_t run_at, nruns;		/* runs[run_at ...]: of min-switch its
-					 * runs, of dda what a seek begins at */
+					 * runs; else what a seek begins at, of
+					 * which nruns tells that of dda */
 	int64_t rest_a, rest_b;		/* dda: accumulators before the tail */
 	uint32_t shift;			/* dda: their modulus is 2^shift */
 	uint8_t axis_a, axis_b;		/* enum interp_axis */
