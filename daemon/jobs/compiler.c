@@ -154,6 +154,7 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	of.text.nc.electrodes = &c->request.electrodes;
 	memcpy(of.build.start_mm, c->request.start_mm,
 	       sizeof(of.build.start_mm));
+	of.build.walked_max = c->request.walked_max;
 	of.build.begins_inside = c->request.goes_on;
 	of.build.threads = wants_program(c) ? 0 : 1;
 	c->build = interp_build_create(&of.build);

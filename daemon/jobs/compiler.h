@@ -49,6 +49,7 @@ struct compiler_request {
 	double work_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* offset_request() */
 	uint32_t segs_max, executed_max;	/* 0: as many as a job may
 						 * have */
+	uint32_t walked_max;		/* interp_build_options */
 	struct interp_build_from from;
 	struct shm_sets sets;
 	/* By a request that was the same but for this; NULL: none.  It is on

@@ -17,6 +17,7 @@
 /* The event loop waits for the check. */
 #define SEGS_MAX	20000u
 #define EXECUTED_MAX	20000u
+#define WALKED_MAX	5000000u
 
 const char *mdi_why_not(const struct jobs *j)
 {
@@ -49,6 +50,7 @@ static int check(struct jobs *j, const struct mdi *m, char *reason, size_t size,
 		.config = j->config, .name = "mdi", .dialect = m->dialect,
 		.text = m->text, .bytes = strlen(m->text),
 		.segs_max = SEGS_MAX, .executed_max = EXECUTED_MAX,
+		.walked_max = WALKED_MAX,
 	};
 	for (int i = 0; i < INTERP_NAXES; i++)
 		request.start_mm[i] = j->link.snap.pos[i] *

@@ -46,6 +46,8 @@ def test_what_is_not_understood_moves_nothing(machine):
                        ("", "empty program"), ("(nothing)", "empty program"),
                        ("G1 X1", "no feed given yet"),
                        ("M98 P1 L99999999\nM2\nO1\nM99", ""),
+                       ("M98 P1 L99\nM2\nO1\nG91 F1 G5 X1 Y0 I50 J90 P-50 Q90"
+                        "\nG1 X-1\nM99", "lattice points together"),
                        ("G0 X1 " + 4000 * " ", "4000 bytes at most"),
                        (5000 * " ", "more than 4095 bytes")):
         code, out = said(machine.ctl("mdi", text))

@@ -108,6 +108,8 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 	if (!b)
 		return NULL;
 	b->o = *o;
+	if (b->o.walked_max == 0)
+		b->o.walked_max = INTERP_BUILD_WALKED_MAX;
 	b->how = pulse_strategy(o->strategy);
 	b->segs.size = sizeof(struct interp_seg);
 	b->nodes.size = sizeof(int64_t);
@@ -509,6 +511,20 @@ static int sensed_begin(struct interp_build *b, uint32_t moved,
 	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
 }
 
+int build_walk(struct interp_build *b, double points,
+	       struct interp_diag *diag)
+{
+	const double most = b->o.walked_max;
+
+	if (points > most - (double)b->walked)
+		return interp_diag_say(diag, "curves and arcs that are more "
+				       "than %.0f lattice points together; "
+				       "fewer, or shorter ones, or arcs by "
+				       "strategy simultaneous", most);
+	b->walked += (uint64_t)points;
+	return 0;
+}
+
 /* How a line is walked. */
 struct walked {
 	uint32_t ticks, arg;		/* as in a segment */
@@ -529,8 +545,10 @@ static int walk_one_by_one(struct interp_build *b, const int64_t *to,
 	if (err < 0)
 		return err;
 	ret->ticks = (uint32_t)ticks;
-	return build_columns(b, m.moved) < 0 ? -ENOMEM :
-	       build_bits_add(b, &way, &ret->arg);
+	if (build_columns(b, m.moved) < 0)
+		return -ENOMEM;
+	err = build_bits_add(b, &way, &ret->arg);
+	return err == 0 && ret->arg ? build_walk(b, ret->ticks, diag) : err;
 }
 
 static inline int walk_together(struct interp_build *b,

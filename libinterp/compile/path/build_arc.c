@@ -310,6 +310,13 @@ static int count_ticks(struct build_arc *p, struct interp_diag *diag)
 	return 0;
 }
 
+/* Each of them is walked to plan the arc. */
+static double pulses_max(const struct interp_build_options *o)
+{
+	return smaller(o->walked_max ? (double)o->walked_max : INFINITY,
+		       INTERP_PULSES_MAX / 2.0);
+}
+
 static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 {
 	struct interp_arc *arc = &p->arc;
@@ -323,7 +330,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 				       "equal pulses",
 				       interp_strategy_name(p->o->strategy));
 	}
-	if (fabs(arc->sweep) * arc->r_mm / pulse > INTERP_PULSES_MAX / 2.0)
+	if (fabs(arc->sweep) * arc->r_mm / pulse > pulses_max(p->o))
 		return refuse_ticks(diag);
 	arc_ends(p, start, end);
 	/* There is nothing to go around, or the helix of a dda has no way

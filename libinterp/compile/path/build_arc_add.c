@@ -48,6 +48,17 @@ int build_arc_add(struct interp_build *b, const struct build_arc *p,
 	return build_seg_finish(b, &seg, w, diag);
 }
 
+/* What was walked to plan it, and will be at the end of the travel. */
+static int walk(struct interp_build *b, const struct build_arc *p,
+		struct interp_diag *diag)
+{
+	const bool at_once = pulse_strategy(b->o.strategy)->at_once;
+	const int err = at_once ? 0 : build_walk(b, p->ticks, diag);
+
+	return err == 0 && p->near_edge ?
+	       build_walk(b, BUILD_EDGE_POINTS, diag) : err;
+}
+
 int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_arc *a,
 		     const struct interp_build_word *w,
@@ -74,7 +85,8 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		return err;
 	if (plan.straight)
 		return interp_build_line(b, end_mm, w, diag);
-	if (plan.near_edge)
+	err = walk(b, &plan, diag);
+	if (err == 0 && plan.near_edge)
 		err = build_edge_look(b, &(struct build_edge) {
 				      .arc = &plan, .word = w }, diag);
 	return err < 0 ? err : build_arc_add(b, &plan, w, diag);

@@ -130,6 +130,9 @@ static int find_places(struct curve_plan *p, const struct interp_piece *piece,
 		if (places * p->turns > INTERP_PULSES_MAX ||
 		    p->tried > TRIED_MAX)
 			break;
+		err = build_walk(p->b, places, p->diag);
+		if (err < 0)
+			return err;
 		pulse_curve_aim(&p->walk, stops, piece->nstops,
 				(uint32_t)places, length_mm);
 		err = try_places(p, end_mm);

@@ -10,6 +10,9 @@
 #include "path/build_arc.h"
 #include "path/build_pair.h"
 
+/* A look takes as long as a walk of so many points. */
+#define BUILD_EDGE_POINTS	4096
+
 /* A planned arc, or two planned contours, from where the path ends. */
 struct build_edge {
 	const struct build_arc *arc;	/* or NULL, and */

@@ -134,6 +134,10 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	}
 	plan.longest_sub = m.longest;
 	err = build_pair_plan(&plan, diag);
+	if (err == 0 && !pulse_strategy(b->o.strategy)->at_once)
+		err = build_walk(b, plan.ticks, diag);
+	if (err == 0 && plan.near_edge)
+		err = build_walk(b, BUILD_EDGE_POINTS, diag);
 	if (err == 0 && plan.near_edge)
 		err = build_edge_look(b, &(struct build_edge) {
 				      .pair = &plan, .word = w }, diag);

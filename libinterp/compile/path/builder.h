@@ -51,6 +51,7 @@ struct interp_build {
 					 * says */
 	struct interp_probed probed;	/* before it begins */
 	double length_mm;
+	uint64_t walked;		/* lattice points, to build it */
 	struct table segs, nodes, arcs;	/* nodes: n counts columns */
 	struct table conds, escapes, runs, couples, bits;
 	struct table curves, pieces, stops, numbers;
@@ -169,6 +170,15 @@ struct build_step {
 	uint32_t moved;			/* bit per axis that moves on the way */
 	const double *end_mm;		/* of all axes */
 };
+
+/**
+ * build_walk() - so many lattice points are walked to build it: are these still
+ * few enough, with all before?  A short text may ask for days of them.
+ *
+ * Return: 0, or -EINVAL with @diag filled.
+ */
+int build_walk(struct interp_build *b, double points,
+	       struct interp_diag *diag);
 
 /** build_step() - add it; the path then stands at its end. */
 int build_step(struct interp_build *b, const struct build_step *s,

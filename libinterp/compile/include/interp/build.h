@@ -20,6 +20,9 @@
 
 struct interp_build;
 
+/* Lattice points: some minutes. */
+#define INTERP_BUILD_WALKED_MAX	500000000u
+
 struct interp_build_options {
 	const struct interp_machine *machine;	/* read at every call; lent */
 	enum interp_strategy strategy;
@@ -36,6 +39,9 @@ struct interp_build_options {
 					 * if either is 0 there is no limit */
 	double points_per_s;		/* lattice points that the machine can
 					 * make; 0: no limit */
+	uint32_t walked_max;		/* lattice points that are walked to
+					 * build the program, as those of curves
+					 * are; 0: INTERP_BUILD_WALKED_MAX */
 	double fit_mm;			/* cut lines in a row become curves that
 					 * are this near to them; 0: they
 					 * stay */

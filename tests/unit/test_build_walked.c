@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_build_walked.c - a text that has few lines and asks for days of walking
+ *
+ * What has to be walked point by point to build a program is counted over all
+ * of it, not only in each curve and arc.
+ */
+#include "nc_read.h"
+
+#define WALKED	20000u
+
+struct text {
+	enum interp_strategy strategy;
+	const char *motion;		/* back where it began */
+	bool refused;
+};
+
+/* 300 times some 600 points or more, each. */
+static const struct text texts[] = {
+	{ INTERP_SIMULTANEOUS, "G5 X0.3 Y0 I0.1 J0.2 P-0.1 Q0.2\nG1 X-0.3",
+	  true },
+	{ INTERP_POINT_BY_POINT, "G2 I0.1", true },
+	{ INTERP_CENTRED, "G2 I0.1", true },
+	{ INTERP_DDA, "G2 I0.1", true },
+	{ INTERP_MIN_SWITCH, "G2 I0.1", true },
+	{ INTERP_MIN_SWITCH, "G2 I0.1 Z0.1\nG1 Z-0.1", true },
+	{ INTERP_MIN_SWITCH, "G1 X0.301 Y0.217 Z0.119\nX-0.301 Y-0.217 Z-0.119",
+	  true },
+	/* These are as quick as lines. */
+	{ INTERP_SIMULTANEOUS, "G2 I0.1", false },
+	{ INTERP_POINT_BY_POINT, "G1 X0.3 Y0.1\nX-0.3 Y-0.1", false },
+	{ INTERP_DDA, "G1 X0.3 Y0.1\nX-0.3 Y-0.1", false },
+};
+
+static int compile(const struct text *t, uint32_t walked_max,
+		   struct interp_diag *diag, uint32_t repeats)
+{
+	struct nc_read n = nc_ready();
+	const struct interp_build_options o = {
+		.machine = &n.machine, .strategy = t->strategy,
+		.tolerance_milli = 2000, .walked_max = walked_max,
+	};
+	struct interp_build *b = interp_build_create(&o);
+	char text[256];
+	int err, len;
+
+	assert_non_null(b);
+	len = snprintf(text, sizeof(text), "G91 F100\nM98 P1 L%u\nM2\nO1\n%s\n"
+		       "M99\n", (unsigned int)repeats, t->motion);
+	n.o.machine = &n.machine;
+	err = interp_nc_compile(&(struct interp_text) {
+		.at = text, .bytes = (size_t)len }, &n.o, b, &n.result, diag);
+	interp_build_destroy(b);
+	return err;
+}
+
+static void what_is_walked_is_counted_over_the_text(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		const struct text *t = &texts[i];
+		struct interp_diag diag = { 0 };
+
+		assert_int_equal(compile(t, WALKED, &diag, 3), 0);
+		assert_int_equal(compile(t, 0, &diag, 300), 0);
+		assert_int_equal(compile(t, WALKED, &diag, 300),
+				 t->refused ? -EINVAL : 0);
+		if (!t->refused)
+			continue;
+		assert_non_null(strstr(diag.found, "more than 20000 lattice"));
+		assert_in_range(diag.line, 5, 6);
+	}
+}
+
+/* A circle that touches the travel is looked at closely, by any strategy. */
+static void so_is_the_end_of_the_travel(void **state)
+{
+	const struct text touching = { INTERP_SIMULTANEOUS, "G2 I100", true };
+	struct interp_diag diag = { 0 };
+
+	(void)state;
+	assert_int_equal(compile(&touching, WALKED, &diag, 3), 0);
+	assert_int_equal(compile(&touching, WALKED, &diag, 9), -EINVAL);
+	assert_non_null(strstr(diag.found, "lattice points"));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(what_is_walked_is_counted_over_the_text),
+		cmocka_unit_test(so_is_the_end_of_the_travel),
+	};
+
+	return cmocka_run_group_tests_name("path/build", tests, NULL, NULL);
+}
