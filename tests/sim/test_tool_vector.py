@@ -108,6 +108,28 @@ M2
 """
 
 
+def test_on_peaks_as_wide_as_a_window_b_keeps_its_speed(tmp_path):
+    """Its rate goes to and fro within 0.3 mm of lines, from their start on."""
+    most, wide = 7.2, 0.29
+    x = 0.0099 * np.arange(1, 300)
+    b = most * np.sin(x / wide * 2 * np.pi) * wide / 2 / np.pi
+    text = "G90 F3000\nG1 X0 B0\n" + "".join(
+        f"X{x:.6f} B{b:.6f}\n" for x, b in zip(x, b)) + "M2\n"
+    (tmp_path / "m.ini").write_text(
+        "[machine]\nperiod_us = 100\nbackend = null\n"
+        "[speed]\ncorner_um = 0.5\n" + "".join(
+            f"[axis.{a}]\npulse_mm = 1e-5\nv_max_mm_s = {v}\n"
+            "a_max_mm_s2 = 300\nj_max_mm_s3 = 1e5\n"
+            "travel_min_mm = -100\ntravel_max_mm = 100\n"
+            for a, v in (("X", 17.5), ("B", 3.45))))
+    done("--machine", tmp_path / "m.ini", "--dry-run", "--trace",
+         tmp_path / "t.csv", text=text)
+    with open(tmp_path / "t.csv") as f:
+        at = [float(row["B"]) for row in csv.DictReader(f)]
+    v = max(abs(b - a) for a, b in zip(at, at[100:])) / 0.01
+    assert 0.9 * 3.45 < v < 1.02 * 3.45
+
+
 def test_at_a_cusp_a_keeps_its_acceleration(tmp_path):
     """It bends and speeds up there at once."""
     done("--dry-run", "--machine", ROOT / "examples/machine-five-axis.ini",

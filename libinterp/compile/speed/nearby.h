@@ -112,11 +112,13 @@ COLUMNS_INLINE void near_rates(struct pass *w, uint32_t i,
 	const bool beside = (~ways & near_all(n)) != 0;
 	const double along = beside ? pass_along_tol(w, ways) : 0;
 	struct chord c = { .h.along = ways };
+	struct peaks peaks;
 
 	near_look(w, i, k);
 	near_way(w, k->behind, k->ahead, &c, n);
+	peaks.around = &c;
 	if (beside)
-		pass_peaks(w, i, &c);
+		pass_peaks(w, i, &peaks);
 	ret->v_mm_s = INFINITY;
 	for (uint32_t j = 0; j < n; j++) {
 		/* So far the length and the axis may be off, if the share is
@@ -124,9 +126,12 @@ COLUMNS_INLINE void near_rates(struct pass *w, uint32_t i,
 		const double off = ways >> j & 1 ? w->tol[j] : w->tol[j] +
 			pass_off(w, j, along, fabs(c.h.rate[j]));
 		const double d = fabs(h->rate[j] - c.h.rate[j]);
-		const double by = fabs(d > off * per_mm ? h->rate[j] :
-							  c.h.rate[j]);
+		double by = fabs(d > off * per_mm ? h->rate[j] : c.h.rate[j]);
 
+		/* The line itself has the whole top, and a rounding. */
+		if (beside && peaks.top[j] > 0)
+			by = larger(by, smaller(by + peaks.top[j],
+						fabs(h->rate[j])));
 		ret->by[j] = by;
 		if (by * ret->v_mm_s > w->v_mm_s[j])
 			ret->v_mm_s = w->v_mm_s[j] / by;

@@ -512,12 +512,18 @@ double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
 	return around(w, &c, both, w->n);
 }
 
-/* A peak of the share of an axis beside the path: over the shorter way @c it is
- * more than over the longer one, by more than @times what both are rounded. */
+/*
+ * A peak of the share of an axis beside the path: over the shorter way @c it is
+ * more than over the longer one, by more than @times what both are rounded.
+ *
+ * The mean over a way is less than the top in its middle.  A round top makes
+ * that grow with the square of the way, so both means tell how much it is.
+ */
 COLUMNS_INLINE void raise_rates(struct pass *w, const struct chord *c,
-				double times, struct chord *around,
-				uint32_t ways, uint32_t n)
+				double times, struct peaks *ret, uint32_t n)
 {
+	struct chord *around = ret->around;
+	const uint32_t ways = around->h.along;
 	const double along = pass_along_tol(w, ways);
 	const double per_mm = times * (c->per_mm + around->per_mm);
 
@@ -525,39 +531,69 @@ COLUMNS_INLINE void raise_rates(struct pass *w, const struct chord *c,
 		double *rate = &around->h.rate[j];
 		const double off = pass_off(w, j, along, fabs(*rate));
 
-		if (!(ways >> j & 1) &&
-		    fabs(c->h.rate[j]) - fabs(*rate) >
-			    (w->tol[j] + off) * per_mm)
-			*rate = c->h.rate[j];
+		const double more = fabs(c->h.rate[j]) - fabs(*rate);
+		/* The way before is so many times as long. */
+		const double times_as_long = c->per_mm / ret->per_mm[j];
+
+		if (ways >> j & 1 || !(more > (w->tol[j] + off) * per_mm))
+			continue;
+		*rate = c->h.rate[j];
+		ret->top[j] = times_as_long < M_SQRT2 ? 0 : more /
+				(times_as_long * times_as_long - 1);
+		ret->per_mm[j] = c->per_mm;
 	}
+}
+
+/* Where lines begin or end, a way around line @i goes far to one side only.  Of
+ * a share that grows or shrinks its mean says little. */
+static void even_sides(const struct pass *w, uint32_t i, uint32_t *behind,
+		       uint32_t *ahead)
+{
+	const struct interp_seg *s = w->segs;
+	const double mm = w->windows[PEAK].mm;
+	const double before = s[i].s_mm - s[i - *behind].s_mm;
+	const double after = s[i + *ahead].s_mm - s[i + 1].s_mm;
+
+	while (before < mm && *ahead > 1 &&
+	       s[i + *ahead].s_mm - s[i + 1].s_mm > before)
+		--*ahead;
+	while (after < mm && *behind > 0 &&
+	       s[i].s_mm - s[i - *behind].s_mm > after)
+		--*behind;
 }
 
 /* A peak may be narrower than any window, and yet so high that no rounding
  * makes it: so the way around the line is halved down to its neighbours.  Over
  * so few lines, the roundings of X and of Y both count in the way. */
-COLUMNS_INLINE void find_peaks(struct pass *w, uint32_t i,
-			       struct chord *around, uint32_t along, uint32_t n)
+COLUMNS_INLINE void find_peaks(struct pass *w, uint32_t i, struct peaks *ret,
+			       uint32_t along, uint32_t n)
 {
 	struct around *k = &w->windows[PEAK];
 	uint32_t behind, ahead;
 	double times = 1;
 	struct chord c;
 
+	for (uint32_t j = 0; j < n; j++) {
+		ret->per_mm[j] = ret->around->per_mm;
+		ret->top[j] = 0;
+	}
 	near_look(w, i, k);
 	behind = i - k->behind;
 	ahead = k->ahead - i;
 	do {
 		near_chord(w, i - behind, i + ahead, along, &c, n);
-		raise_rates(w, &c, times, around, along, n);
+		raise_rates(w, &c, times, ret, n);
+		if (times == 1)
+			even_sides(w, i, &behind, &ahead);
 		times = FEW_LINES;
 		behind /= 2;
 		ahead = (ahead + 1) / 2;
 	} while (behind > 0 || ahead > 1);
 }
 
-void pass_peaks(struct pass *w, uint32_t i, struct chord *around)
+void pass_peaks(struct pass *w, uint32_t i, struct peaks *ret)
 {
-	BY_WAYS(w->n, around->h.along, find_peaks, w, i, around);
+	BY_WAYS(w->n, ret->around->h.along, find_peaks, w, i, ret);
 }
 
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,

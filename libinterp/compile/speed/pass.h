@@ -481,9 +481,18 @@ struct rates {
 					 * nothing is said */
 };
 
-/** pass_peaks() - what lies beside @around, the way around line @i, takes the
- *  rates of peaks there. */
-void pass_peaks(struct pass *w, uint32_t i, struct chord *around);
+/* Of what lies beside the path, around a line. */
+struct peaks {
+	struct chord *around;		/* the way around it; lent */
+	double per_mm[INTERP_NAXES];	/* the inverse of the way over which a
+					 * rate was found */
+	double top[INTERP_NAXES];	/* by how much the top of its peak is
+					 * above that rate */
+};
+
+/** pass_peaks() - what lies beside @ret->around, the way around line @i, takes
+ *  the rates of peaks there; fill the rest of @ret. */
+void pass_peaks(struct pass *w, uint32_t i, struct peaks *ret);
 
 /** pass_rates() - find the rates of segment @i. */
 void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
