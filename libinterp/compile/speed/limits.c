@@ -149,6 +149,7 @@ float pass_level(const struct pass *w, double v_mm_s)
  * from its other end twice as many.  Single limits far from it, as those of
  * lines that a rounding made longer, do not end it.  But a move is no faster
  * than the low ones: where these are a third and more, they are the plateau.
+ * On a way that becomes faster and faster, a coarse level above it is taken.
  */
 static float plateau_level(struct pass *w, double v_mm_s)
 {
@@ -159,8 +160,9 @@ static float plateau_level(struct pass *w, double v_mm_s)
 	if (v_mm_s >= low && v_mm_s < PLATEAU_HIGH * low) {
 		p->far = 0;
 		p->below -= p->below > 0;
-		return ++p->near > PLATEAU ? p->low_mm_s :
-					     pass_least(most, p->low_mm_s);
+		if (++p->near <= PLATEAU)
+			return pass_least(most, p->low_mm_s);
+		return most > p->low_mm_s ? most : p->low_mm_s;
 	}
 	if (v_mm_s < low && PLATEAU_HIGH * v_mm_s >= low) {
 		p->far = p->below = 0;
