@@ -16,6 +16,7 @@ DERIVATIVES_WITHIN = 1e-11
 
 def peer(name):
     r = subprocess.run([str(PEER / name), str(CURVES),
+                        os.environ.get("EDM_SEED") or
                         str(random.randrange(1 << 32))],
                        capture_output=True, text=True, check=True, timeout=300)
     return r.stdout
