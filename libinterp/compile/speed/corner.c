@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* corner.c - nodes beside a corner, whose windows show it */
 #include "speed/pass.h"
-#include <stdio.h>
-#include <stdlib.h>
 
 /* A node is a corner if those a chord away from it are so much faster. */
 #define CORNER		2
