@@ -333,4 +333,20 @@ static inline void disturb(struct rig *r, uint64_t *s, unsigned int one_in)
 		tell_mm(r, CYCLE_RETRACT, uniform(s, 0.001, 9));
 }
 
+/* A dry run with this travel, without limits of the places. */
+static inline struct cycle_config dry(double a_mm_s2, double j_mm_s3)
+{
+	struct cycle_config k = usual_config();
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		k.travel_min[i] = -1000000;
+		k.travel_max[i] = 1000000;
+	}
+	k.travel_a_mm_s2 = a_mm_s2;
+	k.travel_j_mm_s3 = j_mm_s3;
+	k.dry_run = k.hold_at_end = true;
+	k.gap.retract_mm_s = 1000;
+	return k;
+}
+
 #endif /* AXIS_TRACK_H */

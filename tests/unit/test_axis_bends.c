@@ -196,24 +196,9 @@ static void watch(struct rig *r, struct ring *k)
 					     r->c.cursor.index);
 }
 
-static struct cycle_config dry(void)
-{
-	struct cycle_config k = usual_config();
-
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		k.travel_min[i] = -1000000;
-		k.travel_max[i] = 1000000;
-	}
-	k.travel_a_mm_s2 = 4000;
-	k.travel_j_mm_s3 = 2e5;
-	k.dry_run = k.hold_at_end = true;
-	k.gap.retract_mm_s = 1000;
-	return k;
-}
-
 static void there_and_back(struct made m)
 {
-	const struct cycle_config k = dry();
+	const struct cycle_config k = dry(4000, 2e5);
 	struct ring ring = { .n = 0 };
 	struct rig r;
 

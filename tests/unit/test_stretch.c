@@ -41,26 +41,12 @@ static struct interp_build *begin_plain(void)
 	return interp_build_create(&o);
 }
 
-static struct cycle_config config_of(void)
-{
-	struct cycle_config k = usual_config();
-
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		k.travel_min[i] = -1000000;
-		k.travel_max[i] = 1000000;
-	}
-	k.travel_a_mm_s2 = 500;
-	k.travel_j_mm_s3 = axes_machine.axis[0].j_max_mm_s3;
-	k.dry_run = k.hold_at_end = true;
-	k.gap.retract_mm_s = 1000;
-	return k;
-}
-
 /* Walks it there and back, and checks each axis.  Return: the seconds of both
  * ways. */
 static void walk(struct made m, double ret_s[2])
 {
-	const struct cycle_config k = config_of();
+	const struct cycle_config k =
+		dry(500, axes_machine.axis[0].j_max_mm_s3);
 	struct track t = { .n = 0 };
 	struct rig r;
 	int n;
@@ -134,7 +120,8 @@ static void on_next_to_no_way_it_turns_one_way(void **st)
 
 	(void)st;
 	for (int i = 0; i < 4; i++) {
-		const struct cycle_config k = config_of();
+		const struct cycle_config k =
+			dry(500, axes_machine.axis[0].j_max_mm_s3);
 		struct interp_build *b = begin_plain();
 		struct pulses c = { 0, 0 };
 		struct rig r;
