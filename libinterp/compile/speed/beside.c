@@ -156,6 +156,14 @@ static void limit(struct look *l, double round_mm_s, double firm_mm_s)
 	l->firm_mm_s = smaller(l->firm_mm_s, firm_mm_s);
 }
 
+/* One that comes and goes in this window may turn back in it, and so change by
+ * more than all of it. */
+static double back_mm_s(double alone_mm_s, double jerk, double change)
+{
+	return change < INFINITY ? smaller(alone_mm_s, cbrt(jerk / change)) :
+				   alone_mm_s;
+}
+
 void pass_beside(struct pass *w, struct look *l, uint32_t j, double d)
 {
 	const double a = for_bend_mm_s2(w, l, j), jerk = w->j_mm_s3[j];
@@ -180,12 +188,13 @@ void pass_beside(struct pass *w, struct look *l, uint32_t j, double d)
 	}
 	set_off = INTERP_ARC_JERK_BOTH * jerk /
 		  (3 * bend * LEAST_ALONG * own_mm_s2(w));
-	round = cbrt(INTERP_ARC_JERK_ROUND * jerk / change.most);
+	round = larger(cbrt(INTERP_ARC_JERK_ROUND * jerk / change.most),
+		       back_mm_s(alone, jerk, change.most));
 	firm = smaller(set_off, sqrt(a / bend));
 	/* A corner is no bend that takes jerk all of the way. */
 	if (smaller(round, firm) > alone || goes_on)
 		note_bent(w, l, j, bend, change.at);
-	limit(l, larger(round, alone), larger(firm, alone));
+	limit(l, round, larger(firm, alone));
 }
 
 /* Unlike on an arc, what an axis needs along the path and for its bend may
