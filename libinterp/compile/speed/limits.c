@@ -268,6 +268,7 @@ static double limit_bend(struct pass *w, uint32_t i, const struct headings *h)
 	double v;
 
 	pass_rates(w, i, h, &rates);
+	w->top_mm_s[1] = rates.top_mm_s;
 	v = larger((double)s->feed_max_mm_s, rates.v_mm_s);
 	if (s->kind == INTERP_CURVE) {
 		/* What its axes leave is known already. */
@@ -290,6 +291,7 @@ COLUMNS_INLINE double limit_line(struct pass *w, uint32_t i,
 
 	near_rates(w, i, h, &rates, near_usual(n), n);
 	soften_seg(w, &w->segs[i], &left, &rates, n);
+	w->top_mm_s[1] = rates.top_mm_s;
 	return larger((double)w->segs[i].feed_max_mm_s, rates.v_mm_s);
 }
 
@@ -314,6 +316,8 @@ COLUMNS_INLINE void limit_seg(struct pass *w, uint32_t i,
 	const bool near = line && pass_is_short(w, i);
 	double v;
 
+	w->top_mm_s[0] = w->top_mm_s[1];
+	w->top_mm_s[1] = INFINITY;
 	if (near && h->first.along == near_usual(n))
 		v = limit_line(w, i, &h->first, n);
 	else if (line && !near)
@@ -386,8 +390,10 @@ COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
 			       const struct heading *a, const struct heading *b,
 			       uint32_t n)
 {
-	double v = near_node_mm_s(w, last, i, a, b, n);
+	const double top = smaller(w->top_mm_s[0], w->top_mm_s[1]);
+	double v = smaller(near_node_mm_s(w, last, i, a, b, n), top);
 
+	w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s, (float)top);
 	if (!(w->segs[last].kind == INTERP_LINE &&
 	      w->segs[i].kind == INTERP_LINE))
 		v = smaller(v, pass_curl(w, last, i, a, b));

@@ -114,12 +114,14 @@ COLUMNS_INLINE void near_rates(struct pass *w, uint32_t i,
 	struct chord c = { .h.along = ways };
 	struct peaks peaks;
 
+	peaks.v_mm_s = INFINITY;
 	near_look(w, i, k);
 	near_way(w, k->behind, k->ahead, &c, n);
 	peaks.around = &c;
 	if (beside)
 		pass_peaks(w, i, &peaks);
 	ret->v_mm_s = INFINITY;
+	ret->top_mm_s = peaks.v_mm_s;
 	for (uint32_t j = 0; j < n; j++) {
 		/* So far the length and the axis may be off, if the share is
 		 * that of the ways around. */
@@ -144,6 +146,7 @@ COLUMNS_INLINE void near_other_rates(const struct interp_seg *s,
 				     struct rates *ret, uint32_t n)
 {
 	ret->v_mm_s = 0;
+	ret->top_mm_s = INFINITY;
 	ret->bends = 0;
 	for (uint32_t j = 0; j < n; j++) {
 		const double ends = larger(fabs(h->first.rate[j]),

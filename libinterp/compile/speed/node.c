@@ -512,6 +512,47 @@ double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
 	return around(w, &c, both, w->n);
 }
 
+/* From node @from to node @to, what column @j moves in a mm of the path. */
+static double rate_over(const struct pass *w, uint32_t from, uint32_t to,
+			uint32_t j)
+{
+	const int64_t *nodes = w->p->nodes + j;
+	const int64_t d = nodes[(uint64_t)to * w->n] -
+			  nodes[(uint64_t)from * w->n];
+
+	return (double)d * w->ways.sub_mm[j] / pass_from_to(w, from, to);
+}
+
+/*
+ * On chord @c the rate of column @j has a peak, if that is more than on the
+ * ways from there to the ends of @wide, both.  A round top takes jerk.  What
+ * differs on one side only is a corner.
+ */
+static void limit_top(const struct pass *w, const struct chord *c,
+		      const struct chord *wide, uint32_t j, double tol,
+		      struct peaks *ret)
+{
+	const double half_mm = c->way_mm / 2;
+	const double rate = c->h.rate[j], way = rate > 0 ? 1 : -1;
+	double bend = INFINITY;
+
+	for (int ahead = 0; ahead < 2; ahead++) {
+		const uint32_t from = ahead ? c->to : wide->from;
+		const uint32_t to = ahead ? wide->to : c->from;
+		double mm, less;
+
+		if (from == to)
+			return;
+		mm = pass_from_to(w, from, to);
+		less = way * (rate - rate_over(w, from, to, j)) -
+		       tol * (1 / mm + 1 / c->way_mm);
+		mm += half_mm;
+		bend = smaller(bend, 6 * less / (mm * (mm + half_mm)));
+	}
+	if (bend > 0)
+		ret->v_mm_s = smaller(ret->v_mm_s, cbrt(w->j_mm_s3[j] / bend));
+}
+
 /*
  * A peak of the share of an axis beside the path: over the shorter way @c it is
  * more than over the longer one, by more than @times what both are rounded.
@@ -520,12 +561,16 @@ double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
  * that grow with the square of the way, so both means tell how much it is.
  */
 COLUMNS_INLINE void raise_rates(struct pass *w, const struct chord *c,
-				double times, struct peaks *ret, uint32_t n)
+				const struct chord *wide, struct peaks *ret,
+				uint32_t n)
 {
 	struct chord *around = ret->around;
 	const uint32_t ways = around->h.along;
 	const double along = pass_along_tol(w, ways);
-	const double per_mm = times * (c->per_mm + around->per_mm);
+	const double times = wide ? FEW_LINES : 1;
+	/* A chord may end where it began. */
+	const double own_per_mm = 1 / c->way_mm;
+	const double per_mm = times * (own_per_mm + around->per_mm);
 
 	for (uint32_t j = 0; j < n; j++) {
 		double *rate = &around->h.rate[j];
@@ -533,14 +578,16 @@ COLUMNS_INLINE void raise_rates(struct pass *w, const struct chord *c,
 
 		const double more = fabs(c->h.rate[j]) - fabs(*rate);
 		/* The way before is so many times as long. */
-		const double times_as_long = c->per_mm / ret->per_mm[j];
+		const double times_as_long = own_per_mm / ret->per_mm[j];
 
 		if (ways >> j & 1 || !(more > (w->tol[j] + off) * per_mm))
 			continue;
+		if (wide)
+			limit_top(w, c, wide, j, w->tol[j] + off, ret);
 		*rate = c->h.rate[j];
 		ret->top[j] = times_as_long < M_SQRT2 ? 0 : more /
 				(times_as_long * times_as_long - 1);
-		ret->per_mm[j] = c->per_mm;
+		ret->per_mm[j] = own_per_mm;
 	}
 }
 
@@ -570,9 +617,9 @@ COLUMNS_INLINE void find_peaks(struct pass *w, uint32_t i, struct peaks *ret,
 {
 	struct around *k = &w->windows[PEAK];
 	uint32_t behind, ahead;
-	double times = 1;
-	struct chord c;
+	struct chord chords[2], *c = &chords[0], *wide = NULL;
 
+	ret->v_mm_s = INFINITY;
 	for (uint32_t j = 0; j < n; j++) {
 		ret->per_mm[j] = ret->around->per_mm;
 		ret->top[j] = 0;
@@ -581,11 +628,12 @@ COLUMNS_INLINE void find_peaks(struct pass *w, uint32_t i, struct peaks *ret,
 	behind = i - k->behind;
 	ahead = k->ahead - i;
 	do {
-		near_chord(w, i - behind, i + ahead, along, &c, n);
-		raise_rates(w, &c, times, ret, n);
-		if (times == 1)
+		near_chord(w, i - behind, i + ahead, along, c, n);
+		raise_rates(w, c, wide, ret, n);
+		if (!wide)
 			even_sides(w, i, &behind, &ahead);
-		times = FEW_LINES;
+		wide = c;
+		c = &chords[c == &chords[0]];
 		behind /= 2;
 		ahead = (ahead + 1) / 2;
 	} while (behind > 0 || ahead > 1);

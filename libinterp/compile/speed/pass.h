@@ -195,6 +195,7 @@ struct pass {
 	double a_linear_mm_s2;		/* the least of X Y Z */
 	double a_own_mm_s2[2];		/* of the segments before and behind the
 					 * node, as if nothing bent */
+	double top_mm_s[2];		/* by narrow peaks of rates on them */
 	uint32_t bends;			/* the columns that have this at the
 					 * node: */
 	struct bent bent[INTERP_NAXES];
@@ -479,6 +480,8 @@ struct rates {
 	double v_mm_s;			/* of a short line: what the speeds of
 					 * the axes allow at such rates; 0:
 					 * nothing is said */
+	double top_mm_s;		/* by the jerk on narrow peaks of them,
+					 * the most over its nodes */
 };
 
 /* Of what lies beside the path, around a line. */
@@ -486,6 +489,7 @@ struct peaks {
 	struct chord *around;		/* the way around it; lent */
 	double per_mm[INTERP_NAXES];	/* the inverse of the way over which a
 					 * rate was found */
+	double v_mm_s;			/* by the jerk on its top */
 	double top[INTERP_NAXES];	/* by how much the top of its peak is
 					 * above that rate */
 };
