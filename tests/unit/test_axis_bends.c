@@ -6,7 +6,9 @@
  * By differences over windows of several cycles, of where the axes are; the
  * seed is printed.  Lines are off a smooth way: what is commanded may be so by
  * corner_um, which counts 4 times in a second difference and 8 times in a third
- * one.
+ * one.  Where lines are about as short as a rounding of the path, as in a cusp
+ * of the tip of a body, an axis beside it is off by its share of that rounding,
+ * too, but by no more than 20 of its own.
  */
 #include "axis_track.h"
 
@@ -19,10 +21,13 @@
 #define RING	128
 
 /* Of the limits: where it bends and speeds up (docs/gap-servo.md, "Not there
- * yet").  An axis of a body may take more; it is not known why. */
+ * yet"). */
 #define MOST_A		1.4
-#define MOST_J		1.7
-#define MOST_J_BODY	4
+#define MOST_J		1.8
+#define MOST_J_BODY	1.4
+
+/* Shorter lines do not tell the share of an axis beside them. */
+#define TINY_MM		(4 * PULSE_MM)
 
 /* In parts of the limits. */
 struct most {
@@ -36,6 +41,7 @@ static const int windows[] = { 8, 16, 32 };
 
 struct ring {
 	double at[RING][INTERP_NAXES];
+	double off[RING][INTERP_NAXES];
 	int n;
 	struct track places;
 };
@@ -162,11 +168,21 @@ static double place_of(const struct ring *k, int back, int axis)
 	return k->at[(k->n - 1 - back) % RING][axis];
 }
 
+/* The most of so many cycles. */
+static double off_of(const struct ring *k, int cycles, int axis)
+{
+	double most = 0;
+
+	for (int back = 0; back <= cycles; back++)
+		most = fmax(most, k->off[(k->n - 1 - back) % RING][axis]);
+	return INTERP_CORNER_MM + PULSE_MM + most;
+}
+
 static void check_window(const struct ring *k, int window, int axis,
 			 uint32_t index)
 {
 	const struct interp_axis_limits *l = &axes_machine.axis[axis];
-	const double t = PERIOD_S * window, off = INTERP_CORNER_MM + PULSE_MM;
+	const double t = PERIOD_S * window, off = off_of(k, 3 * window, axis);
 	const double p[4] = {
 		place_of(k, 0, axis), place_of(k, window, axis),
 		place_of(k, 2 * window, axis), place_of(k, 3 * window, axis),
@@ -184,10 +200,21 @@ static void check_window(const struct ring *k, int window, int axis,
 			 l->j_max_mm_s3);
 }
 
+/* By which an axis is off, where the path is about as short as a rounding. */
+static double tiny_off(const struct rig *r, int axis)
+{
+	const struct interp_seg *s = &r->c.cursor.seg;
+
+	return s->kind == INTERP_LINE && s->length_mm < TINY_MM ?
+	       PULSE_MM * fmin(rate_of(r, axis), 20) : 0;
+}
+
 static void watch(struct rig *r, struct ring *k)
 {
 	step(r, OPEN_V);
 	places_of(&k->places, r, k->at[k->n % RING]);
+	for (int j = 0; j < INTERP_NAXES; j++)
+		k->off[k->n % RING][j] = tiny_off(r, j);
 	k->n++;
 	for (int i = 0; i < 3; i++)
 		for (int j = 0; j < INTERP_NAXES; j++)

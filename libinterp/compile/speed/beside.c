@@ -156,12 +156,18 @@ static void limit(struct look *l, double round_mm_s, double firm_mm_s)
 	l->firm_mm_s = smaller(l->firm_mm_s, firm_mm_s);
 }
 
-/* One that comes and goes in this window may turn back in it, and so change by
- * more than all of it. */
-static double back_mm_s(double alone_mm_s, double jerk, double change)
+/* cbrt(INTERP_ARC_JERK_ROUND) */
+#define ROUND_SPEED	0.66943295
+
+/* By how it changes in a mm.  One that is in this window alone may turn back
+ * in it, and so change by more than all of it. */
+static double changes_mm_s(double jerk, double change, double alone_mm_s)
 {
-	return change < INFINITY ? smaller(alone_mm_s, cbrt(jerk / change)) :
-				   alone_mm_s;
+	const double v = cbrt(jerk / change);
+
+	if (!(change < INFINITY))
+		return alone_mm_s;
+	return larger(ROUND_SPEED * v, smaller(alone_mm_s, v));
 }
 
 void pass_beside(struct pass *w, struct look *l, uint32_t j, double d)
@@ -188,8 +194,7 @@ void pass_beside(struct pass *w, struct look *l, uint32_t j, double d)
 	}
 	set_off = INTERP_ARC_JERK_BOTH * jerk /
 		  (3 * bend * LEAST_ALONG * own_mm_s2(w));
-	round = larger(cbrt(INTERP_ARC_JERK_ROUND * jerk / change.most),
-		       back_mm_s(alone, jerk, change.most));
+	round = changes_mm_s(jerk, change.most, alone);
 	firm = smaller(set_off, sqrt(a / bend));
 	/* A corner is no bend that takes jerk all of the way. */
 	if (smaller(round, firm) > alone || goes_on)

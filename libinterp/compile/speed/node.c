@@ -525,20 +525,19 @@ static double rate_over(const struct pass *w, uint32_t from, uint32_t to,
 
 /*
  * On chord @c the rate of column @j has a peak, if that is more than on the
- * ways from there to the ends of @wide, both.  A round top takes jerk.  What
- * differs on one side only is a corner.
+ * ways from there to the ends of the wider one, both.  A round top takes jerk.
+ * What differs on one side only is a corner.
  */
 static void limit_top(const struct pass *w, const struct chord *c,
-		      const struct chord *wide, uint32_t j, double tol,
-		      struct peaks *ret)
+		      uint32_t j, double tol, struct peaks *ret)
 {
 	const double half_mm = c->way_mm / 2;
 	const double rate = c->h.rate[j], way = rate > 0 ? 1 : -1;
 	double bend = INFINITY;
 
 	for (int ahead = 0; ahead < 2; ahead++) {
-		const uint32_t from = ahead ? c->to : wide->from;
-		const uint32_t to = ahead ? wide->to : c->from;
+		const uint32_t from = ahead ? c->to : ret->from;
+		const uint32_t to = ahead ? ret->to : c->from;
 		double mm, less;
 
 		if (from == to)
@@ -561,13 +560,11 @@ static void limit_top(const struct pass *w, const struct chord *c,
  * that grow with the square of the way, so both means tell how much it is.
  */
 COLUMNS_INLINE void raise_rates(struct pass *w, const struct chord *c,
-				const struct chord *wide, struct peaks *ret,
-				uint32_t n)
+				double times, struct peaks *ret, uint32_t n)
 {
 	struct chord *around = ret->around;
 	const uint32_t ways = around->h.along;
 	const double along = pass_along_tol(w, ways);
-	const double times = wide ? FEW_LINES : 1;
 	/* A chord may end where it began. */
 	const double own_per_mm = 1 / c->way_mm;
 	const double per_mm = times * (own_per_mm + around->per_mm);
@@ -582,8 +579,8 @@ COLUMNS_INLINE void raise_rates(struct pass *w, const struct chord *c,
 
 		if (ways >> j & 1 || !(more > (w->tol[j] + off) * per_mm))
 			continue;
-		if (wide)
-			limit_top(w, c, wide, j, w->tol[j] + off, ret);
+		if (times > 1)
+			limit_top(w, c, j, w->tol[j] + off, ret);
 		*rate = c->h.rate[j];
 		ret->top[j] = times_as_long < M_SQRT2 ? 0 : more /
 				(times_as_long * times_as_long - 1);
@@ -617,7 +614,8 @@ COLUMNS_INLINE void find_peaks(struct pass *w, uint32_t i, struct peaks *ret,
 {
 	struct around *k = &w->windows[PEAK];
 	uint32_t behind, ahead;
-	struct chord chords[2], *c = &chords[0], *wide = NULL;
+	double times = 1;
+	struct chord c;
 
 	ret->v_mm_s = INFINITY;
 	for (uint32_t j = 0; j < n; j++) {
@@ -628,12 +626,13 @@ COLUMNS_INLINE void find_peaks(struct pass *w, uint32_t i, struct peaks *ret,
 	behind = i - k->behind;
 	ahead = k->ahead - i;
 	do {
-		near_chord(w, i - behind, i + ahead, along, c, n);
-		raise_rates(w, c, wide, ret, n);
-		if (!wide)
+		near_chord(w, i - behind, i + ahead, along, &c, n);
+		raise_rates(w, &c, times, ret, n);
+		if (times == 1)
 			even_sides(w, i, &behind, &ahead);
-		wide = c;
-		c = &chords[c == &chords[0]];
+		times = FEW_LINES;
+		ret->from = c.from;
+		ret->to = c.to;
 		behind /= 2;
 		ahead = (ahead + 1) / 2;
 	} while (behind > 0 || ahead > 1);

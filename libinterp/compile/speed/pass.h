@@ -489,7 +489,8 @@ struct peaks {
 	struct chord *around;		/* the way around it; lent */
 	double per_mm[INTERP_NAXES];	/* the inverse of the way over which a
 					 * rate was found */
-	double v_mm_s;			/* by the jerk on its top */
+	uint32_t from, to;		/* the wider way */
+	double v_mm_s;			/* by the jerk on a top */
 	double top[INTERP_NAXES];	/* by how much the top of its peak is
 					 * above that rate */
 };
