@@ -7,8 +7,8 @@
 /*
  * A service that has come reads all of edmd's events again.  A job that was put
  * back has the end of an earlier loading among them: it was unloaded, and did
- * not end.  That lies in front of the event of its last loading, and in front of
- * edmd's answer to a loading that is under way.
+ * not end.  That lies in front of the event of its last loading, and in front
+ * of edmd's answer to a loading that is under way.
  */
 void queue_ended_event(struct queue *q, const struct shm_event *e)
 {
