@@ -33,7 +33,7 @@ int interp_diag_say(struct interp_diag *d, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));
 
 /**
- * interp_diag_print() - vsnprintf() for what is refused: %g has up to 15 digits.
+ * interp_diag_print() - vsnprintf() for refusals: %g has up to 15 digits.
  *
  * With six of them 89.0000001 would be refused as 89, and 1000000.4 as 1e+06.
  */
