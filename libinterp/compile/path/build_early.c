@@ -50,6 +50,10 @@ void build_early_entry(const struct interp_build *b,
 	*ret = b->inside.entry;
 	/* The same sum as if nothing had been left out. */
 	ret->length_mm = b->inside.left_mm;
-	for (size_t i = b->inside.nway; i < b->segs.n; i++)
+	for (size_t i = b->inside.nway; i < b->segs.n; i++) {
 		ret->length_mm += s[i].length_mm;
+		/* The place may have been in the last one that was known. */
+		if (!ret->next_line && s[i].length_mm > 0)
+			ret->next_line = s[i].line;
+	}
 }

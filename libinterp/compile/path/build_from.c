@@ -454,7 +454,6 @@ int build_leave_out(struct interp_build *b, const struct interp_build_from *o,
 	int err;
 
 	*ret = (struct interp_build_entry) { .npassed = 0 };
-	diag->column = 1;
 	err = find_place(&f);
 	if (err < 0)
 		return err;
@@ -482,6 +481,7 @@ int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
 {
 	const int err = interp_build_flush(b, diag);
 
+	diag->column = 1;
 	if (err < 0)
 		return err;
 	if (b->inside.done) {
