@@ -98,7 +98,10 @@ static void act_settle(struct jobs *j, const struct verb *v,
 	const struct shm_status *s = j->link.status;
 	struct shm_done d;
 
-	if (j->link.state != LINK_OK || !s) {
+	if (v->machine == VERB_OWN) {
+		/* It was not handed over, nor done. */
+		v->run(j, v, c);
+	} else if (j->link.state != LINK_OK || !s) {
 		reply_forget(&j->replies, c);
 		jobs_answer(j, &(struct jobs_lcm_ack) {
 			.key = c->key, .client = c->client, .seq = c->seq,

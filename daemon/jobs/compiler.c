@@ -306,16 +306,6 @@ static void compiler_work(struct compiler *c)
 	free(c->text);
 }
 
-void compiler_now(const struct compiler_request *request,
-		  struct compiler_result *ret)
-{
-	static struct compiler c;
-
-	c = (struct compiler) { .request = *request };
-	compiler_work(&c);
-	*ret = c.result;
-}
-
 void compiler_take_out(struct compiler_result *r)
 {
 	r->wear = (struct interp_wear) { .nchanges = 0 };

@@ -98,10 +98,7 @@ int compiler_start(struct compiler **ret, sd_event *event,
 		   const struct compiler_request *request,
 		   compiler_done_fn done, void *arg);
 
-/** compiler_now() - the same at once, in this thread; for a short text. */
-void compiler_now(const struct compiler_request *request,
-		  struct compiler_result *ret);
-/** compiler_forget() - what compiler_now() made. */
+/** compiler_forget() - free what was taken out. */
 void compiler_forget(struct compiler_result *r);
 /** compiler_take_out() - what @r has belongs to the caller from now on. */
 void compiler_take_out(struct compiler_result *r);

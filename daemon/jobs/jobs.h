@@ -51,6 +51,7 @@ struct jobs {
 	bool key_shared;		/* a copy of it is in /dev/shm */
 	struct compiler *check[UPLOAD_SLOTS];	/* the check of
 						 * uploads.slot[i] */
+	struct mdi_check *mdi;		/* lines that are checked; NULL: none */
 	struct due status;
 	int64_t begun_us;		/* of this service */
 	struct checkpoint_file *checkpoint;	/* NULL: there is none */

@@ -10,6 +10,7 @@
 #include "keyring.h"
 #include "jobs_log.h"
 #include "logger.h"
+#include "mdi.h"
 #include "names.h"
 #include "values.h"
 
@@ -359,6 +360,7 @@ static int run(struct jobs *j)
 	if (err < 0)
 		log_error("ends: %s", strerror(-err));
 	submit_fini(j);
+	mdi_fini(j);
 	queue_fini(j);
 	link_fini(&j->link);
 	sd_event_unref(j->event);

@@ -3,7 +3,9 @@
  * mdi.h - lines that are carried out at once, on a machine that is idle
  *
  * They are a job like any other: compiled, checked against the travel, in the
- * history.  But they never wait: what cannot begin now is refused.
+ * history.  But they never wait: what cannot begin now is refused.  They are
+ * checked in a thread of their own, and begin if nothing else has begun
+ * meanwhile and the one who asked still asks.
  *
  * Threads: one, that of the event loop.
  */
@@ -18,7 +20,8 @@
 /* What is to be carried out. */
 struct mdi {
 	const char *id, *name, *text;
-	const char *dialect;		/* NULL: that of the machine file */
+	const char *dialect;		/* lent, until the end; NULL: that of
+					 * the machine file */
 	uint32_t measures;		/* as in struct store_job */
 };
 
@@ -27,10 +30,16 @@ const char *mdi_why_not(const struct jobs *j);
 
 /**
  * mdi_run() - check it, and put it where it begins at once.  The sender of @c
- * is answered.
+ * is answered when it is checked.
  */
 void mdi_run(struct jobs *j, const struct jobs_lcm_command *c,
 	     const struct mdi *m);
+
+/** mdi_heard() - @c came once more: the one who asked still waits. */
+void mdi_heard(struct jobs *j, const struct jobs_lcm_command *c);
+
+/** mdi_fini() - forget what is being checked; a repeat checks it anew. */
+void mdi_fini(struct jobs *j);
 
 /** mdi_take() - the verb "mdi". */
 void mdi_take(struct jobs *j, const struct verb *v,

@@ -6,6 +6,27 @@
 #include <stdlib.h>
 #include <string.h>
 
+void reply_asker_keep(struct asker *a, const struct jobs_lcm_command *c)
+{
+	*a = (struct asker) { .seq = c->seq, .act = c->act };
+	memcpy(a->key, c->key, sizeof(a->key));
+	snprintf(a->client, sizeof(a->client), "%s", c->client);
+}
+
+struct jobs_lcm_command reply_asker_command(const struct asker *a)
+{
+	return (struct jobs_lcm_command) {
+		.key = a->key, .client = a->client, .seq = a->seq,
+		.act = a->act,
+	};
+}
+
+bool reply_asker_is(const struct asker *a, const struct jobs_lcm_command *c)
+{
+	return a->seq == c->seq && strcmp(a->client, c->client) == 0 &&
+	       memcmp(a->key, c->key, sizeof(a->key)) == 0;
+}
+
 const struct reply *reply_find(const struct replies *r, const uint8_t *key,
 			       const char *client, int64_t seq)
 {

@@ -27,6 +27,24 @@ struct replies {
 	unsigned int next;
 };
 
+/* Who asked, until the answer is known. */
+struct asker {
+	uint8_t key[SEAL_KEY_BYTES];
+	char client[JOBS_LCM_CLIENT_MAX];
+	int64_t seq;
+	uint64_t act;
+};
+
+/** reply_asker_keep() - remember the sender of @c. */
+void reply_asker_keep(struct asker *a, const struct jobs_lcm_command *c);
+
+/** reply_asker_command() - as much of the command as an answer needs; it
+ *  points into @a. */
+struct jobs_lcm_command reply_asker_command(const struct asker *a);
+
+/** reply_asker_is() - is @c this command, or a repeat of it? */
+bool reply_asker_is(const struct asker *a, const struct jobs_lcm_command *c);
+
 /** reply_find() - what is remembered of this command; NULL if it is new. */
 const struct reply *reply_find(const struct replies *r, const uint8_t *key,
 			       const char *client, int64_t seq);

@@ -36,10 +36,7 @@
 /* A command on its way to edmd. */
 struct asked {
 	struct jobs *jobs;
-	uint64_t act;
-	uint8_t key[SEAL_KEY_BYTES];
-	char client[JOBS_LCM_CLIENT_MAX];
-	int64_t seq;
+	struct asker by;
 	const struct verb *verb;
 };
 
@@ -153,10 +150,7 @@ static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
 	struct jobs *j = a->jobs;
-	struct jobs_lcm_command c = {
-		.key = a->key, .client = a->client, .seq = a->seq,
-		.act = a->act,
-	};
+	const struct jobs_lcm_command c = reply_asker_command(&a->by);
 	char reason[160];
 
 	if (a->verb->machine == SHM_DO_START ||
@@ -203,11 +197,8 @@ static struct asked *asked_new(struct jobs *j, const struct verb *v,
 		return NULL;
 	}
 	a->jobs = j;
-	a->act = c->act;
-	a->seq = c->seq;
-	memcpy(a->key, c->key, sizeof(a->key));
 	a->verb = v;
-	snprintf(a->client, sizeof(a->client), "%s", c->client);
+	reply_asker_keep(&a->by, c);
 	return a;
 }
 
@@ -684,8 +675,10 @@ void verbs_take(void *arg, const struct jobs_lcm_command *c)
 	struct jobs *j = arg;
 	const struct verb *v = verb_find(c->verb);
 
-	if (is_repeat(j, c))
+	if (is_repeat(j, c)) {
+		mdi_heard(j, c);
 		return;
+	}
 	if (is_late(v, c)) {
 		jobs_lcm_ack(j->lcm, &(struct jobs_lcm_ack) {
 			.key = c->key, .client = c->client, .seq = c->seq,

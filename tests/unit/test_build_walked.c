@@ -84,11 +84,54 @@ static void so_is_the_end_of_the_travel(void **state)
 	assert_non_null(strstr(diag.found, "lattice points"));
 }
 
+/* What is too long is told by its own length, before it is walked. */
+static void one_arc_is_counted_before_it_is_walked(void **state)
+{
+	const struct text large = { INTERP_POINT_BY_POINT, "G2 I20", true };
+	struct interp_diag diag = { 0 };
+
+	(void)state;
+	assert_int_equal(compile(&large, WALKED, &diag, 1), -EINVAL);
+	assert_non_null(strstr(diag.found, "more than 20000 lattice"));
+}
+
+/* Two circles of 5 * 10^8 pulses each: the sum has too many for a segment, and
+ * no place for its bits is taken. */
+static void so_are_two_contours(void **state)
+{
+	const double r_mm = 80000, end_mm[INTERP_NAXES] = { 0 };
+	const struct interp_build_contour circle[2] = {
+		{ .arc = true, .centre_mm = { r_mm, 0 } },
+		{ .arc = true, .centre_mm = { r_mm, 0 } },
+	};
+	const struct interp_build_word w = { .line = 5, .feed_mm_s = 1 };
+	struct nc_read n = nc_ready();
+	struct interp_diag diag = { 0 };
+	struct interp_build *b;
+
+	(void)state;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		n.machine.axis[i].travel_min_mm = -4 * r_mm;
+		n.machine.axis[i].travel_max_mm = 4 * r_mm;
+	}
+	b = interp_build_create(&(struct interp_build_options) {
+		.machine = &n.machine, .strategy = INTERP_POINT_BY_POINT,
+		.walked_max = WALKED,
+	});
+	assert_non_null(b);
+	assert_int_equal(interp_build_pair(b, end_mm, circle, &w, &diag),
+			 -EINVAL);
+	assert_non_null(strstr(diag.found, "more than 20000 lattice"));
+	interp_build_destroy(b);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_is_walked_is_counted_over_the_text),
 		cmocka_unit_test(so_is_the_end_of_the_travel),
+		cmocka_unit_test(one_arc_is_counted_before_it_is_walked),
+		cmocka_unit_test(so_are_two_contours),
 	};
 
 	return cmocka_run_group_tests_name("path/build", tests, NULL, NULL);

@@ -3,6 +3,7 @@
  * build_arc.c - from the words of a G2 or G3 to an arc segment
  */
 #include "path/build_arc.h"
+#include "path/builder.h"
 #include "pulse/strategy.h"
 
 #include "interp/angle.h"
@@ -310,11 +311,17 @@ static int count_ticks(struct build_arc *p, struct interp_diag *diag)
 	return 0;
 }
 
-/* Each of them is walked to plan the arc. */
-static double pulses_max(const struct interp_build_options *o)
+/* Each of them is walked to plan the arc.  One axis at a time, no way is
+ * shorter than the arc; its ends may be two pulses nearer to each other. */
+static int check_pulses(const struct build_arc *p, double pulse,
+			struct interp_diag *diag)
 {
-	return smaller(o->walked_max ? (double)o->walked_max : INFINITY,
-		       INTERP_PULSES_MAX / 2.0);
+	const double r_mm = smaller(p->arc.r_mm, p->arc.r_mm + p->arc.dr_mm);
+	const double least = fabs(p->arc.sweep) * r_mm / pulse;
+
+	if (least > INTERP_PULSES_MAX / 2.0)
+		return refuse_ticks(diag);
+	return build_walk_may(p->walks, least * 0.99 - 2, diag);
 }
 
 static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
@@ -330,8 +337,9 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 				       "equal pulses",
 				       interp_strategy_name(p->o->strategy));
 	}
-	if (fabs(arc->sweep) * arc->r_mm / pulse > pulses_max(p->o))
-		return refuse_ticks(diag);
+	err = check_pulses(p, pulse, diag);
+	if (err < 0)
+		return err;
 	arc_ends(p, start, end);
 	/* There is nothing to go around, or the helix of a dda has no way
 	 * around it. */

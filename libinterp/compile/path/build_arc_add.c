@@ -65,8 +65,9 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     struct interp_diag *diag)
 {
 	int64_t to[INTERP_NAXES];
-	struct build_arc plan = { .o = &b->o, .word = a, .loose = b->loose,
-				  .end_mm = end_mm, .to_sub = to };
+	struct build_arc plan = { .o = &b->o, .walks = b, .word = a,
+				  .loose = b->loose, .end_mm = end_mm,
+				  .to_sub = to };
 	const uint32_t plane = 1u << a->axis_a | 1u << a->axis_b;
 	struct build_measure m;
 	int err = build_measure_next(b, end_mm, to, &m, diag);

@@ -98,7 +98,7 @@ static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 	};
 	int err;
 
-	*plan = (struct build_arc) { .o = &o, .word = &word,
+	*plan = (struct build_arc) { .o = &o, .walks = p->walks, .word = &word,
 				     .loose = p->loose };
 	for (int j = 0; j < 2; j++) {
 		const enum interp_axis a = plane[i][j];
@@ -234,7 +234,10 @@ static int follow_walk(struct build_pair *p, struct interp_diag *diag)
 	const uint64_t ticks = (uint64_t)arc[0].circle_ticks +
 			       arc[1].circle_ticks;
 	struct follow f;
+	const int err = build_walk_may(p->walks, (double)ticks, diag);
 
+	if (err < 0)
+		return err;
 	if (ticks > INTERP_PULSES_MAX || !follow_init(&f, p))
 		return refuse_long(diag);
 	p->ticks = (uint32_t)ticks;

@@ -111,7 +111,8 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      struct interp_diag *diag)
 {
 	int64_t to[INTERP_NAXES];
-	struct build_pair plan = { .machine = b->o.machine, .contour = contour,
+	struct build_pair plan = { .walks = b, .machine = b->o.machine,
+				   .contour = contour,
 				   .strategy = b->o.strategy,
 				   .end_mm = end_mm, .to_sub = to,
 				   .loose = b->loose };

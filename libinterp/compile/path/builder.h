@@ -180,6 +180,11 @@ struct build_step {
 int build_walk(struct interp_build *b, double points,
 	       struct interp_diag *diag);
 
+/** build_walk_may() - the same, but they are not counted yet: what has at least
+ *  so many is refused before it is walked. */
+int build_walk_may(const struct interp_build *b, double points,
+		   struct interp_diag *diag);
+
 /** build_step() - add it; the path then stands at its end. */
 int build_step(struct interp_build *b, const struct build_step *s,
 	       const struct interp_build_word *w, struct interp_diag *diag);
