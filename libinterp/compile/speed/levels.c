@@ -4,8 +4,9 @@
  * acceleration, or jerk, allow the least of it
  *
  * So a cycle that looks ahead for less finds no more than a few hundred places.
- * A move has the least of all of its way, which is no less for that: whatever
- * steps levels had, a rounding would take a value from above a step to below it.
+ * A move has the least of its whole way, which is no less for that.  Between
+ * steps that are the same everywhere, a rounding would take what is a little
+ * above a step to the next one below.
  */
 #include "speed/pass.h"
 

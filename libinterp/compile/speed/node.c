@@ -295,10 +295,11 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 		if (isinf(enough)) {
 			note_shown(&l, &l.round, &w->dip.round);
 			note_shown(&l, &l.firm, &w->dip.bow);
-			l.firm.mm_s = (float)bow_along_mm_s(w, &l.bow, c.d,
-							    along, n);
-			l.firm.most_mm_s = (float)bow_along_mm_s(
-				w, &l.bow, less, along, n);
+			fast = bow_along_mm_s(w, &l.bow, c.d, along, n);
+			l.firm.mm_s = l.firm.most_mm_s = (float)fast;
+			if (fast < most)
+				l.firm.most_mm_s = (float)bow_along_mm_s(
+					w, &l.bow, less, along, n);
 			note_shown(&l, &l.firm, &w->dip.bow);
 		}
 		change_of(w, at_most, &c, along, n);
