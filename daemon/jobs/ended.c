@@ -4,6 +4,24 @@
 #include "jobs.h"
 #include "offset.h"
 
+/*
+ * A service that has come reads all of edmd's events again.  A job that was put
+ * back has the end of an earlier loading among them: it was unloaded, and did
+ * not end.  That lies in front of the event of its last loading, and in front
+ * of edmd's answer to a loading that is under way.
+ */
+void queue_ended_event(struct queue *q, const struct shm_event *e)
+{
+	if (!q->job.n || q->loading)
+		return;
+	if (e->kind == SHM_EV_LOADED && (uint32_t)e->code == q->job.n)
+		q->ended = SHM_OUTCOME_NONE;
+	if (e->kind != SHM_EV_ENDED || e->program != q->job.n)
+		return;
+	if (e->code == SHM_OUTCOME_DONE || e->code == SHM_OUTCOME_STOPPED)
+		q->ended = (uint32_t)e->code;
+}
+
 void queue_totals(struct jobs *j, struct shm_snapshot *ret)
 {
 	static struct again a;

@@ -268,12 +268,7 @@ void queue_event(struct jobs *j, const struct shm_event *e)
 		follow_hunting(j, e);
 	if (e->kind == SHM_EV_SELECT)
 		follow_select(j, (uint32_t)e->code);
-	/* The event may be an old one, of an earlier loading.  It is used only
-	 * when the program is gone. */
-	if (e->kind != SHM_EV_ENDED || !q->job.n || e->program != q->job.n)
-		return;
-	if (e->code == SHM_OUTCOME_DONE || e->code == SHM_OUTCOME_STOPPED)
-		q->ended = (uint32_t)e->code;
+	queue_ended_event(q, e);
 }
 
 static void follow_fault(struct jobs *j)

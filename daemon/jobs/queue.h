@@ -109,6 +109,10 @@ void queue_drop(struct jobs *j, bool again);
  *  before it was interrupted. */
 void queue_totals(struct jobs *j, struct shm_snapshot *ret);
 
+/** queue_ended_event() - note that the loaded job has ended, for when edmd does
+ *  not have it any more. */
+void queue_ended_event(struct queue *q, const struct shm_event *e);
+
 /** queue_record() - the job is over, or in a fault for now: write that. */
 void queue_record(struct jobs *j, enum job_state state, const char *reason);
 

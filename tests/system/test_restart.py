@@ -64,6 +64,27 @@ def test_a_queue_survives_edmd_jobs(machine):
         c.job_where(f"q{i}", "done")
 
 
+def test_a_job_that_is_ready_outlives_edmd_jobs(machine):
+    """The service puts it back when it ends, and loads it when it comes: the
+    end of the first loading, which edmd still tells of, is not its end.  Texts
+    of several lengths are ready at several moments after that."""
+    c = machine.client
+    for lines in (2, 500, 2000, 4000, 6000, 8000):
+        job = f"job-{lines}"
+        text = b"G21 G90 F600\n" + lines * b"G1 X1\nG1 X0\n" + b"M30\n"
+        assert c.submit(text, job, hold=True).code == 0
+        c.job_where(job, "ready")
+        for _ in range(2):
+            assert machine.end("jobs") == 0
+            machine.start_jobs()
+            until(lambda: c.ask("show", job).code == 0
+                  and c.job(job)["state"] != "queued")
+            j = c.job(job)
+            assert j["state"] == "ready", (lines, j["state"], j["reason"])
+        assert c.ask("stop").code == 0
+        c.job_where(job, "stopped")
+
+
 def test_edmd_is_killed_status_says_so_and_it_comes_back_held(machine):
     c = begin(machine)
     machine.kill("edmd")

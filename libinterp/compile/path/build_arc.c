@@ -397,6 +397,21 @@ static int settle_spiral(struct build_arc *p, struct interp_diag *diag)
 				     "of the smaller at most", r0, r1);
 }
 
+/* The cycle refuses to walk round what it cannot count in pulses. */
+static int settle_far(const struct build_arc *p, struct interp_diag *diag)
+{
+	const struct interp_arc *arc = &p->arc;
+	const double a = limits(p, arc->axis_a)->pulse_mm;
+	const double b = limits(p, arc->axis_b)->pulse_mm;
+
+	if (pulse_arc_near(arc, 1 / a, 1 / b))
+		return 0;
+	return interp_diag_say(diag, "an arc of radius %.0f mm round a place "
+			       "at %.0f %.0f; a radius and a centre of less "
+			       "than %.0f mm, or a line", arc->r_mm, arc->a_mm,
+			       arc->b_mm, INTERP_PULSES_MAX * smaller(a, b));
+}
+
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 {
 	int err = build_arc_shape(p, diag);
@@ -408,6 +423,9 @@ int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 		return err;
 	err = settle_spiral(p, diag);
 	if (err < 0 || p->straight)
+		return err;
+	err = settle_far(p, diag);
+	if (err < 0)
 		return err;
 	arc_length(p);
 	return strategy(p)->at_once ? ticks_simultaneous(p, diag) :

@@ -217,16 +217,21 @@ static bool near(double mm, double pulses_mm)
 	return fabs(mm) * pulses_mm < INTERP_PULSES_MAX;
 }
 
+bool pulse_arc_near(const struct interp_arc *arc, double a_pulses_mm,
+		    double b_pulses_mm)
+{
+	return near(arc->a_mm, a_pulses_mm) && near(arc->b_mm, b_pulses_mm) &&
+	       near(arc->r_mm, a_pulses_mm) && near(arc->r_mm, b_pulses_mm);
+}
+
 bool pulse_plane_ok(const struct interp_cursor *c)
 {
 	const struct interp_arc *arc = &c->arc;
 
 	return arc->axis_a < INTERP_NAXES && arc->axis_b < INTERP_NAXES &&
 	       arc->axis_a != arc->axis_b &&
-	       near(arc->a_mm, c->pulses_mm[arc->axis_a]) &&
-	       near(arc->b_mm, c->pulses_mm[arc->axis_b]) &&
-	       near(arc->r_mm, c->pulses_mm[arc->axis_a]) &&
-	       near(arc->r_mm, c->pulses_mm[arc->axis_b]) &&
+	       pulse_arc_near(arc, c->pulses_mm[arc->axis_a],
+			      c->pulses_mm[arc->axis_b]) &&
 	       fabs(arc->dr_mm) <= fabs(arc->r_mm) && isfinite(arc->theta) &&
 	       isfinite(arc->sweep);
 }

@@ -205,6 +205,10 @@ struct couple_rule pulse_rule(const struct interp_cursor *c);
  */
 int64_t pulse_dda_ticks(int64_t longest);
 
+/** pulse_arc_near() - are centre and radius INTERP_PULSES_MAX at most?  Others
+ *  are walked nowhere. */
+bool pulse_arc_near(const struct interp_arc *arc, double a_pulses_mm,
+		    double b_pulses_mm);
 /** pulse_plane_ok() - are an arc's axes and centre in range? */
 bool pulse_plane_ok(const struct interp_cursor *c);
 
