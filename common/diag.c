@@ -10,6 +10,35 @@
 #define SENTENCE_MAX	1024
 #define BETWEEN		"; "
 
+/* The same format, with all digits of a double that a text can hold. */
+static void all_digits(char to[SENTENCE_MAX], const char *format)
+{
+	size_t n = 0;
+
+	for (; *format && n < SENTENCE_MAX - 8; format++) {
+		to[n++] = *format;
+		if (format[0] == '%' && format[1] == 'g') {
+			memcpy(to + n, ".15", 3);
+			n += 3;
+		} else if (format[0] == '%' && format[1] == '%') {
+			to[n++] = *++format;
+		}
+	}
+	to[n] = '\0';
+}
+
+/* The compiler has checked the arguments against the format as it was. */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wformat-nonliteral"
+void interp_diag_print(char *to, size_t size, const char *format, va_list ap)
+{
+	char digits[SENTENCE_MAX];
+
+	all_digits(digits, format);
+	vsnprintf(to, size, digits, ap);
+}
+#pragma GCC diagnostic pop
+
 /*
  * The arguments belong to the whole sentence.  So the sentence is printed as a
  * whole, and then once more without the part that says what is wanted.  The
@@ -25,17 +54,13 @@ int interp_diag_say(struct interp_diag *d, const char *format, ...)
 	snprintf(found, sizeof(found), "%.*s",
 		 cut ? (int)(cut - format) : (int)strlen(format), format);
 	va_start(ap, format);
-	/* The compiler has checked the arguments against the whole format. */
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wformat-nonliteral"
-	vsnprintf(all, sizeof(all), found, ap);
-#pragma GCC diagnostic pop
+	interp_diag_print(all, sizeof(all), found, ap);
 	va_end(ap);
 	snprintf(d->found, sizeof(d->found), "%.*s",
 		 (int)sizeof(d->found) - 1, all);
 	n = strlen(all);
 	va_start(ap, format);
-	vsnprintf(all, sizeof(all), format, ap);
+	interp_diag_print(all, sizeof(all), format, ap);
 	va_end(ap);
 	n += cut ? sizeof(BETWEEN) - 1 : 0;
 	snprintf(d->wanted, sizeof(d->wanted), "%.*s",

@@ -150,22 +150,34 @@ struct tables {
 	struct config_dialect dialect;
 };
 
-/* What an operator would hear of a job that begins inside. */
-static int begin_inside(const struct sim_options *o,
-			const struct machine_config *c,
-			const struct config_compiling *of,
-			struct interp_build *b, struct interp_diag *diag)
+/* Is it to begin inside?  Then say where. */
+static bool begins_inside(const struct sim_options *o,
+			  const struct machine_config *c,
+			  struct config_compiling *of,
+			  struct interp_build_from *ret)
 {
-	struct interp_build_from from = {
+	*ret = (struct interp_build_from) {
 		.line = (uint32_t)o->from_line, .far_mm = o->from_mm,
 		.up = config_way_out(c),
 	};
+	memcpy(ret->now_mm, of->build.start_mm, sizeof(ret->now_mm));
+	of->build.begins_inside = ret->line || ret->far_mm > 0;
+	if (of->build.begins_inside)
+		of->build.from = ret;
+	return of->build.begins_inside;
+}
+
+/* What an operator would hear of a job that begins inside. */
+static int begin_inside(const struct sim_options *o,
+			const struct machine_config *c,
+			const struct interp_build_from *from,
+			struct interp_build *b, struct interp_diag *diag)
+{
 	struct interp_build_entry entry;
 	char way[480];
 	int err;
 
-	memcpy(from.now_mm, of->build.start_mm, sizeof(from.now_mm));
-	err = interp_build_from(b, &from, &entry, diag);
+	err = interp_build_from(b, from, &entry, diag);
 	if (err < 0 || o->quiet)
 		return err;
 	config_entry_words(c, &entry, way, sizeof(way));
@@ -186,7 +198,9 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	const struct interp_notes notes = { say_note, (void *)(uintptr_t)o->job,
 					    o->check };
 	struct config_compiling of;
+	struct interp_build_from from;
 	struct interp_diag diag = { 0 };
+	bool inside;
 	const double from_s = clock_s(CLOCK_MONOTONIC);
 	struct interp_build *b;
 	int err;
@@ -194,7 +208,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	config_compiling(c, &with->tech, &of);
 	of.text.nc.notes = &notes;
 	of.text.nc.refused = o->check ? &refused : NULL;
-	of.build.begins_inside = o->from_line || o->from_mm > 0;
+	inside = begins_inside(o, c, &of, &from);
 	b = interp_build_create(&of.build);
 	if (!b)
 		return EX_OSERR;
@@ -202,8 +216,8 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	job->compile_lines_s = job->lines / (clock_s(CLOCK_MONOTONIC) - from_s);
 	if (err == -EINVAL && o->check)
 		say_all(&all, &text, &of);
-	if (err == 0 && of.build.begins_inside)
-		err = begin_inside(o, c, &of, b, &diag);
+	if (err == 0 && inside)
+		err = begin_inside(o, c, &from, b, &diag);
 	/* The text of a million lines is half as large as their program. */
 	free(t->at);
 	t->at = NULL;

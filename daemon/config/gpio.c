@@ -290,7 +290,8 @@ static int check_speed(struct check *q, const struct config_key *k,
 			       "of [gpio], %g pulses/s; at most %g%s; or a "
 			       "larger pulse_mm, a shorter period_us, signal "
 			       "= quadrature", section, k->name, v, unit,
-			       config_gpio_points_s(q->c), most, unit);
+			       config_gpio_points_s(q->c),
+			       floor(most * 1e6) / 1e6, unit);
 }
 
 /* A jump may go along any linear axis. */

@@ -156,6 +156,7 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	       sizeof(of.build.start_mm));
 	of.build.walked_max = c->request.walked_max;
 	of.build.begins_inside = c->request.goes_on;
+	of.build.from = c->request.goes_on ? &c->request.from : NULL;
 	of.build.threads = wants_program(c) ? 0 : 1;
 	c->build = interp_build_create(&of.build);
 	if (!c->build)

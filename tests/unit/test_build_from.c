@@ -14,12 +14,15 @@
 #include "interp/build_from.h"
 #include "interp/cursor.h"
 #include "interp/mcode_arg.h"
+#include "path/builder.h"
 
 #define RUNS		150
 #define POINTS_MAX	400000
 #define AXIS		{ 0.001, -200, 200, 100, 500, 1e5 }
 
 static uint64_t seed;
+static uint32_t nearly;			/* that left out before they were
+					 * whole */
 
 static const struct interp_machine machine = {
 	.present = 0xff,
@@ -76,6 +79,14 @@ static struct tale walk(const struct interp_program *p, uint32_t from)
 	memcpy(t.end, c.pos, sizeof(t.end));
 	return t;
 }
+
+/* What became of a program that begins inside. */
+struct told {
+	int rc;
+	struct interp_diag d;
+	struct interp_build_entry e;
+	struct tale tale;
+};
 
 /* Of the way in: it starts here, ends there, and is positioned. */
 static uint32_t check_way(const struct interp_program *p,
@@ -143,6 +154,41 @@ static void check_entry(const struct interp_program *whole,
 	}
 }
 
+/* Whoever is told the place before the text leaves out the same. */
+static bool check_early(const struct script *text, const char *dialect,
+			struct interp_build_options bo,
+			const struct interp_build_from *o,
+			const struct told *late)
+{
+	struct interp_build *part;
+	struct told told = { .d.line = 0 };
+	struct made b;
+	struct tale is;
+	bool early;
+
+	bo.begins_inside = true;
+	bo.from = o;
+	part = random_build(text, dialect, &bo);
+	assert_non_null(part);
+	early = part->inside.done;
+	told.rc = interp_build_from(part, o, &told.e, &told.d);
+	assert_int_equal(told.rc, late->rc);
+	if (told.rc != 0) {
+		assert_memory_equal(&told.d, &late->d, sizeof(told.d));
+		interp_build_destroy(part);
+		return early;
+	}
+	/* Behind its last field there may be anything. */
+	assert_memory_equal(&told.e, &late->e,
+			    offsetof(struct interp_build_entry, electrode));
+	assert_int_equal(told.e.electrode, late->e.electrode);
+	b = finish(part);
+	is = walk(&b.p, check_way(&b.p, o, &told.e));
+	assert_memory_equal(&is, &late->tale, sizeof(is));
+	free(b.block);
+	return early;
+}
+
 /* Return: was it taken? */
 static bool try_one(const struct script *text, const char *dialect,
 		    enum interp_strategy how, uint64_t *s)
@@ -154,8 +200,7 @@ static bool try_one(const struct script *text, const char *dialect,
 	};
 	struct interp_build *whole = random_build(text, dialect, &bo), *part;
 	struct interp_build_from o = { .up = rnd(s) % 2 ? INTERP_Z : -1 };
-	struct interp_build_entry e;
-	struct interp_diag d = { 0 };
+	struct told told = { .d.line = 0 };
 	struct made a, b;
 	struct tale was, is;
 	uint32_t first;
@@ -175,25 +220,28 @@ static bool try_one(const struct script *text, const char *dialect,
 		o.probed.shift[i] = (int32_t)uniform(s, -4e5, 4e5);
 	part = random_build(text, dialect, &bo);
 	assert_non_null(part);
-	if (interp_build_from(part, &o, &e, &d) != 0) {
-		assert_true(d.found[0] && d.wanted[0]);
+	told.rc = interp_build_from(part, &o, &told.e, &told.d);
+	if (told.rc != 0) {
+		assert_true(told.d.found[0] && told.d.wanted[0]);
+		nearly += check_early(text, dialect, bo, &o, &told);
 		interp_build_destroy(part);
 		free(a.block);
 		return false;
 	}
 	b = finish(part);
-	check_entry(&a.p, &e);
-	first = check_way(&b.p, &o, &e);
-	was = walk(&a.p, first_left(&a.p, e.from_mm));
-	is = walk(&b.p, first);
+	check_entry(&a.p, &told.e);
+	first = check_way(&b.p, &o, &told.e);
+	was = walk(&a.p, first_left(&a.p, told.e.from_mm));
+	is = told.tale = walk(&b.p, first);
 	if (was.points < POINTS_MAX) {
 		assert_int_equal(is.points, was.points);
 		assert_true(is.hash == was.hash);
 		assert_memory_equal(is.end, was.end, sizeof(is.end));
 		assert_true(is.actions <= was.actions);
 	}
-	assert_true(fabs(b.p.head->length_mm - e.way_mm -
-			 (a.p.head->length_mm - e.from_mm)) < 1e-6);
+	assert_true(fabs(b.p.head->length_mm - told.e.way_mm -
+			 (a.p.head->length_mm - told.e.from_mm)) < 1e-6);
+	nearly += check_early(text, dialect, bo, &o, &told);
 	free(a.block);
 	free(b.block);
 	return true;
@@ -217,7 +265,9 @@ static void from_a_place_on_it_is_the_same(void **st)
 	}
 	print_message("    %d of %d programs were taken\n", taken,
 		      runs * INTERP_NSTRATEGIES);
+	print_message("    %u began before they were whole\n", nearly);
 	assert_true(taken > runs);
+	assert_true(nearly > 0);
 }
 
 /* It begins at 0, or at Z1; the place is 0.9 mm behind that, or its line. */

@@ -149,7 +149,7 @@ static void what_does_not_agree_is_refused_with_the_remedy(void **state)
 		  "gpio.spark without gpio.estop", "or gpio.estop_by" },
 		{ "step_X = 1\ndir_X = 2\nhigh_cycles = 2\n",
 		  "axis.X.v_max_mm_s 10 mm/s is faster",
-		  "at most 6.66667 mm/s" },
+		  "at most 6.666666 mm/s" },
 		{ "step_X = 1\ndir_X = 2\nencoder_X = 3 2\n",
 		  "gpio.encoder_X \"3 2\" has a line that is used for "
 		  "something else too",

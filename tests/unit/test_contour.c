@@ -218,6 +218,9 @@ static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
 		       "register 0, which is not defined");
 	assert_refused(w, "F5\nG41 D1 H1 G1 X5\n", 2, "H on a line with D");
 	assert_refused(w, "H1=160\n", 1, "an offset of 160 mm");
+	assert_refused(w, "G20\nH1=4\n", 2, "an offset of 101.6 mm");
+	assert_refused(w, "G20 H1=.004\n", 1,
+		       "H1 on a line that changes the units");
 	assert_refused(w, "H1000=1\n", 1, "out of range");
 	assert_refused(w, "D1.5\n", 1, "not a whole");
 }

@@ -13,6 +13,7 @@
 #include "seed.h"
 
 #include "interp/build_from.h"
+#include "path/builder.h"
 
 #define ROUNDS	SEED_ROUNDS(6)
 #define SEGS	24000			/* of which a thread sees some
@@ -126,10 +127,13 @@ static void go_on(struct interp_build *b, struct going *g, double *end,
 		line(b, end);
 }
 
-static struct interp_build *program(uint64_t s, uint32_t threads)
+static struct interp_build *program_from(uint64_t s, uint32_t threads,
+					 const struct interp_build_from *from)
 {
 	struct interp_build_options o = { .machine = &help_machine,
-					  .threads = threads };
+					  .threads = threads,
+					  .begins_inside = from != NULL,
+					  .from = from };
 	const uint32_t curve_at = rnd(&s) % 2 ? SEGS * 3 / 4 : 0;
 	double end[INTERP_NAXES] = { 0 };
 	struct interp_build *b;
@@ -147,6 +151,11 @@ static struct interp_build *program(uint64_t s, uint32_t threads)
 		go_on(b, &g, end, &s);
 	}
 	return b;
+}
+
+static struct interp_build *program(uint64_t s, uint32_t threads)
+{
+	return program_from(s, threads, NULL);
 }
 
 static void same(const struct made *a, const struct made *b)
@@ -178,28 +187,37 @@ static void limits_do_not_depend_on_the_number_of_threads(void **st)
 	}
 }
 
-static struct made rest_of(struct interp_build *b)
+static struct interp_build *rest_of(struct interp_build *b,
+				    const struct interp_build_from *from,
+				    struct interp_build_entry *ret)
 {
-	const struct interp_build_from from = { .far_mm = 20,
-						.probed_known = true,
-						.up = INTERP_Z };
-	struct interp_build_entry entry;
 	struct interp_diag d = { 0 };
 
-	if (interp_build_from(b, &from, &entry, &d) != 0)
+	if (interp_build_from(b, from, ret, &d) != 0)
 		fail_msg("%s; %s", d.found, d.wanted);
-	return finish(b);
+	return b;
 }
 
 static void neither_do_those_of_the_rest_of_a_program(void **st)
 {
-	struct made a = rest_of(program(seed, 1));
-	struct made b = rest_of(program(seed, 2));
+	const struct interp_build_from from = { .far_mm = 20,
+						.probed_known = true,
+						.up = INTERP_Z };
+	struct interp_build_entry entry[4];
+	struct made made[4];
 
 	(void)st;
-	same(&a, &b);
-	unmake(&a);
-	unmake(&b);
+	for (uint32_t i = 0; i < 4; i++) {
+		struct interp_build *b = i < 2 ? program(seed, i + 1) :
+			program_from(seed, i - 1, &from);
+
+		assert_int_equal(b->inside.done, i >= 2);
+		made[i] = finish(rest_of(b, &from, &entry[i]));
+	}
+	same(&made[0], &made[1]);
+	same(&made[2], &made[3]);
+	for (uint32_t i = 0; i < 4; i++)
+		unmake(&made[i]);
 }
 
 static void a_program_may_be_given_up(void **st)

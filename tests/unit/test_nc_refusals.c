@@ -35,7 +35,12 @@ static const struct refusal numbers[] = {
 	{ "O100000000",		1, 1,	"O100000000 is out", "0 to 99999" },
 	{ "G1 F0 X1",		1, 4,	"F0 is out of range", "a feed of" },
 	{ "G1 F-3 X1",		1, 4,	"F-3 is out of range", "a feed of" },
-	{ "G4 P2000000",	1, 4,	"a dwell of 2e+06 s", "1000000 s" },
+	{ "G4 P2000000",	1, 4,	"a dwell of 2000000 s", "1000000 s" },
+	{ "G4 P1000000.4",	1, 4,	"a dwell of 1000000.4 s", "1000000 s" },
+	{ "F1 G133 Z-5 R0.2 A89.0000001 Q0.05", 1, 18,
+	  "a cone's wall at 89.0000001 degrees", "less than 89" },
+	{ "F1 G130 Z-5 R0.2 P1.00000001", 1, 18, "1.00000001 turns",
+	  "a whole number" },
 };
 
 static const struct refusal words[] = {

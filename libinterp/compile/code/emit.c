@@ -53,7 +53,7 @@ int emit_refuse(struct interp_diag *diag, uint32_t line, const char *wanted,
 	diag->column = 1;		/* the whole line */
 	snprintf(diag->wanted, sizeof(diag->wanted), "%s", wanted);
 	va_start(ap, found);
-	vsnprintf(diag->found, sizeof(diag->found), found, ap);
+	interp_diag_print(diag->found, sizeof(diag->found), found, ap);
 	va_end(ap);
 	return -EINVAL;
 }

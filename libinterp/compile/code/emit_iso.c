@@ -168,7 +168,7 @@ static int words_of(struct iso_writer *o, struct words *w, uint32_t i)
 	case INTERP_ARC:
 		return arc(o, w, i);
 	case INTERP_DWELL:
-		word(w, "G4 P%g", seg->arg / 1000.0);
+		word(w, "G4 P%.15g", seg->arg / 1000.0);
 		return 0;
 	case INTERP_STOP:
 		word(w, "M0");

@@ -27,7 +27,7 @@ int macro_refuse(struct macro_line *l, const uint8_t *at, const char *wanted,
 	va_list ap;
 
 	va_start(ap, found);
-	vsnprintf(text, sizeof(text), found, ap);
+	interp_diag_print(text, sizeof(text), found, ap);
 	va_end(ap);
 	return nc_refuse(l->r, at, wanted, "%s", text);
 }

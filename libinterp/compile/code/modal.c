@@ -40,7 +40,14 @@ static int run_tape(struct nc_reader *r)
 
 static int run_units(struct nc_reader *r)
 {
-	nc_set_units(r, r->block.code[NC_UNITS]->value);
+	const struct nc_block *b = &r->block;
+	const bool was = r->unit_mm > 1, inches = b->code[NC_UNITS]->value;
+
+	if (b->unit_at && inches != was)
+		return nc_refuse(r, b->unit_at, "the units on a line before it",
+				 "%s on a line that changes the units",
+				 nc_quote_word(r, b->unit_at).s);
+	nc_set_units(r, inches);
 	return 0;
 }
 

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #define NC_NKEYS	10	/* registers that the machine file has */
+#define OFFSET_MAX_MM	100.0
 
 int nc_refuse_wire(struct nc_reader *r, const uint8_t *at)
 {
@@ -20,10 +21,13 @@ int nc_refuse_wire(struct nc_reader *r, const uint8_t *at)
 int nc_define_register(struct nc_reader *r, const uint8_t *at, uint32_t n,
 		       double value)
 {
-	if (!(value >= -100 && value <= 100))
+	const double mm = value * r->unit_mm;
+
+	if (!(fabs(mm) <= OFFSET_MAX_MM))
 		return nc_refuse(r, at, "an offset of -100 to 100 mm",
-				 "an offset of %g mm", value * r->unit_mm);
-	r->registers[n] = (struct nc_register) { true, value * r->unit_mm };
+				 "an offset of %g mm", mm);
+	r->registers[n] = (struct nc_register) { true, mm };
+	r->block.unit_at = at;
 	r->block.groups |= NC_BIT(NC_REGISTER);
 	return 0;
 }

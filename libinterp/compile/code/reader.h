@@ -79,6 +79,8 @@ struct nc_block {
 	const uint8_t *dropper_at;
 	const uint8_t *alone_at;	/* an ignored word beside which nothing
 					 * may move, or NULL */
+	const uint8_t *unit_at;		/* the first word whose value needed the
+					 * units when it was scanned, or NULL */
 	const uint8_t *at[NC_NSLOTS];	/* position of the letter */
 	const struct nc_code *code[NC_NGROUPS];
 	const uint8_t *code_at[NC_NGROUPS];

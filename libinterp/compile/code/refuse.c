@@ -11,7 +11,7 @@ static void fill(struct interp_diag *d, const char *wanted, const char *found,
 		 va_list ap)
 {
 	snprintf(d->wanted, sizeof(d->wanted), "%s", wanted);
-	vsnprintf(d->found, sizeof(d->found), found, ap);
+	interp_diag_print(d->found, sizeof(d->found), found, ap);
 }
 
 uint32_t nc_column(const struct nc_reader *r, const uint8_t *at)

@@ -70,6 +70,8 @@ static bool pointed_length(struct nc_reader *r, const uint8_t *at,
 		nc_note_point(r, at);
 	if (r->d->point == NC_POINT_LAST)
 		*v /= nc_pow10[r->unit_mm > 1 ? 4 : 3];
+	if (r->d->point == NC_POINT_LAST && !r->block.unit_at)
+		r->block.unit_at = at;
 	if (r->d->point != NC_POINT_WANTED)
 		return true;
 	nc_refuse(r, at, "a decimal point, as in X10.0: without one some "
@@ -634,6 +636,7 @@ int nc_scan_line(struct nc_reader *r)
 	b->drops = 0;
 	b->dropper = NULL;
 	b->alone_at = NULL;
+	b->unit_at = NULL;
 
 	if (err)
 		return err;

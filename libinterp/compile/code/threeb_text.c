@@ -33,7 +33,7 @@ int threeb_refuse(struct threeb_text *t, const uint8_t *at, const char *wanted,
 	d->column = (uint32_t)(at - t->line_at) + 1;
 	snprintf(d->wanted, sizeof(d->wanted), "%s", wanted);
 	va_start(ap, found);
-	vsnprintf(d->found, sizeof(d->found), found, ap);
+	interp_diag_print(d->found, sizeof(d->found), found, ap);
 	va_end(ap);
 	return -EINVAL;
 }

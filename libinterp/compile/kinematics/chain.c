@@ -42,7 +42,7 @@ static int refuse(struct interp_diag *d, const char *wanted,
 
 	snprintf(d->wanted, sizeof(d->wanted), "%s", wanted);
 	va_start(args, found);
-	vsnprintf(d->found, sizeof(d->found), found, args);
+	interp_diag_print(d->found, sizeof(d->found), found, args);
 	va_end(args);
 	return -EINVAL;
 }

@@ -51,10 +51,14 @@ static int64_t *nodes_of(const struct interp_build *b)
 	return b->nodes.at;
 }
 
-static struct interp_seg *seg_add(struct interp_build *b)
+static inline int seg_room(struct interp_build *b)
 {
-	if (b->segs.n == b->segs.room && build_segs_room(b) < 0)
-		return NULL;
+	return b->segs.n == b->segs.room ? build_segs_room(b) : 0;
+}
+
+/* There is room. */
+static inline struct interp_seg *seg_add(struct interp_build *b)
+{
 	return (struct interp_seg *)b->segs.at + b->segs.n++;
 }
 
@@ -137,7 +141,7 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 	}
 	b->lift_axis = -1;
 	b->descent.axis = -1;
-	begin = seg_add(b);
+	begin = seg_room(b) < 0 ? NULL : seg_add(b);
 	none = build_table_add(&b->conds);
 	path = build_table_add(&b->escapes);
 	if (!begin || !none || !path) {
@@ -294,10 +298,11 @@ static inline int seg_finish(struct interp_build *b, struct interp_seg *seg,
 			  w->cond_number == b->cond_number &&
 			  w->tech == b->tech;
 	const int err = same ? 0 : change_cond(b, w, diag);
-	struct interp_seg *s;
 
 	if (err < 0)
 		return err;
+	if (seg_room(b) < 0)
+		return -ENOMEM;
 	seg->cond = b->cond;
 	seg->line = w->line;
 	seg->s_mm = b->length_mm;
@@ -306,10 +311,7 @@ static inline int seg_finish(struct interp_build *b, struct interp_seg *seg,
 		seg->flags |= INTERP_SEG_OFF;
 	if (node_add(b) < 0)
 		return -ENOMEM;
-	s = seg_add(b);
-	if (!s)
-		return -ENOMEM;
-	*s = *seg;
+	*seg_add(b) = *seg;
 	b->length_mm += seg->length_mm;
 	return 0;
 }

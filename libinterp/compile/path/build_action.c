@@ -25,13 +25,14 @@ int interp_build_timed(struct interp_build *b,
 		       const struct interp_build_word *w,
 		       struct interp_diag *diag)
 {
-	const int err = interp_build_flush(b, diag);
+	const int err = interp_build_action(b, INTERP_TIMED, 0, w, diag);
 
 	if (err < 0)
 		return err;
-	b->timed = b->segs.n;
+	/* Where it is now: segments before it may have been left out. */
+	b->timed = b->segs.n - 1;
 	memcpy(b->timed_at, b->here, sizeof(b->timed_at));
-	return interp_build_action(b, INTERP_TIMED, 0, w, diag);
+	return 0;
 }
 
 int interp_build_timed_end(struct interp_build *b, uint32_t ms,

@@ -266,6 +266,7 @@ static int make_way(struct from *f)
 	for (int i = 0; i < INTERP_NAXES; i++)
 		o.start_mm[i] = f->o->now_mm[i] - shift_mm(f, i);
 	o.fit_mm = 0;
+	o.from = NULL;
 	f->way = interp_build_create(&o);
 	if (!f->way)
 		return -ENOMEM;
@@ -393,10 +394,14 @@ static int join(struct from *f)
 			     (left_out + 1) * b->naxes);
 	if (err < 0)
 		return err;
+	b->inside.left_mm = left_out < b->segs.n ?
+			    segs_of(b)[left_out].s_mm : b->length_mm;
 	f->entry->way_mm = way->length_mm;
 	swap(&b->segs, &way->segs);
 	swap(&b->nodes, &way->nodes);
 	b->segs_room = b->segs.room;
+	b->timed = 0;
+	b->inside.nway = (uint32_t)nway;
 	memcpy(b->first, way->first, sizeof(b->first));
 	number_anew(f, nway);
 	return 0;
@@ -441,18 +446,14 @@ static int find_place(struct from *f)
 	return 0;
 }
 
-int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
-		      struct interp_build_entry *ret, struct interp_diag *diag)
+int build_leave_out(struct interp_build *b, const struct interp_build_from *o,
+		    struct interp_build_entry *ret, struct interp_diag *diag)
 {
 	struct from f = { .b = b, .o = o, .entry = ret, .diag = diag };
 	const struct interp_seg *s;
-	int err = interp_build_flush(b, diag);
+	int err;
 
 	*ret = (struct interp_build_entry) { .npassed = 0 };
-	diag->column = 1;
-	if (err < 0)
-		return err;
-	build_limits_stop(b);
 	err = find_place(&f);
 	if (err < 0)
 		return err;
@@ -467,9 +468,26 @@ int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
 		ret->next_line = s[i].length_mm > 0 ? s[i].line : 0;
 	entry_of(&f, ret->entry_mm);
 	err = make_way(&f);
-	forget_all(&f);
-	if (err == 0)
+	if (err == 0) {
+		forget_all(&f);
 		err = join(&f);
+	}
 	interp_build_destroy(f.way);
 	return err;
+}
+
+int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
+		      struct interp_build_entry *ret, struct interp_diag *diag)
+{
+	const int err = interp_build_flush(b, diag);
+
+	diag->column = 1;
+	if (err < 0)
+		return err;
+	if (b->inside.done) {
+		build_early_entry(b, ret);
+		return 0;
+	}
+	build_limits_stop(b);
+	return build_leave_out(b, o, ret, diag);
 }

@@ -11,8 +11,10 @@
 /* A shorter program is done before a thread has begun. */
 #define LONG		8192		/* segments */
 
-/* After so many more the thread is told. */
+/* After so many more the thread is told ... */
 #define STEP		4096
+/* ... or it is asked whether the place is passed where the program begins. */
+#define STEP_BEFORE	16
 
 uint32_t build_threads(const struct interp_build *b)
 {
@@ -43,7 +45,8 @@ static struct interp_limits limits_of(const struct interp_build *b,
 static bool may_follow(const struct interp_build *b)
 {
 	return b->pieces.n == 0 && !(b->o.fit_mm > 0) &&
-	       !b->o.begins_inside && build_threads(b) > 1;
+	       (!b->o.begins_inside || b->inside.done) &&
+	       build_threads(b) > 1;
 }
 
 static void note_tables(struct interp_build *b)
@@ -82,13 +85,17 @@ static void tell(struct interp_build *b)
 int build_segs_room(struct interp_build *b)
 {
 	struct table *t = &b->segs;
+	size_t step;
 
+	if (build_early(b) < 0)
+		return -ENOMEM;
 	t->room = b->segs_room;
 	if (t->n == t->room && build_seen_room(b, t, 1) < 0)
 		return -ENOMEM;
 	b->segs_room = t->room;
-	if (t->room > t->n + STEP)
-		t->room = t->n + STEP;
+	step = b->o.from && !b->inside.tried ? STEP_BEFORE : STEP;
+	if (t->room > t->n + step)
+		t->room = t->n + step;
 	if (!b->follow && may_follow(b))
 		follow(b);
 	tell(b);

@@ -7,7 +7,7 @@
 #ifndef PATH_BUILDER_H
 #define PATH_BUILDER_H
 
-#include "interp/build.h"
+#include "interp/build_from.h"
 #include "path/build_rule.h"
 #include "speed/follow.h"
 
@@ -23,6 +23,15 @@ struct build_fit {
 	uint32_t *lines;		/* of the source */
 	uint32_t n;			/* points; 0: nothing is held back */
 	struct interp_build_word word;
+};
+
+/* What was left out while the program was still read (build_early.c). */
+struct build_inside {
+	bool tried, done;
+	uint32_t nway;			/* segments of the way in */
+	double left_mm;			/* where the next one was along the
+					 * whole program */
+	struct interp_build_entry entry;
 };
 
 /* Consecutive motions along one linear axis only, up to here. */
@@ -68,6 +77,7 @@ struct interp_build {
 					 * last */
 	int64_t timed_at[INTERP_NAXES];	/* place of it, subpulses */
 	const struct interp_tech *tech;	/* from this cond was made */
+	struct build_inside inside;
 	size_t segs_room;		/* of which segs.room is a part */
 	struct follow *follow;		/* finds limits meanwhile; NULL: nobody
 					 * does */
@@ -184,6 +194,20 @@ int build_walk(struct interp_build *b, double points,
  *  so many is refused before it is walked. */
 int build_walk_may(const struct interp_build *b, double points,
 		   struct interp_diag *diag);
+
+/**
+ * build_early() - if the place that the options name is passed, leave out what
+ * is before it.  All segments are whole.  Return: 0 or -ENOMEM.
+ */
+int build_early(struct interp_build *b);
+
+/** build_early_entry() - how that begins, now that all is read. */
+void build_early_entry(const struct interp_build *b,
+		       struct interp_build_entry *ret);
+
+/** build_leave_out() - interp_build_from(), of what is there so far. */
+int build_leave_out(struct interp_build *b, const struct interp_build_from *o,
+		    struct interp_build_entry *ret, struct interp_diag *diag);
 
 /** build_step() - add it; the path then stands at its end. */
 int build_step(struct interp_build *b, const struct build_step *s,

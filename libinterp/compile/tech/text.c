@@ -187,7 +187,7 @@ int tech_refuse(struct tech_text *t, const char *at, const char *wanted,
 	d->line = t->line ? t->line : 1;
 	d->column = at ? (uint32_t)(at - t->line_at) + 1 : 1;
 	va_start(ap, found);
-	vsnprintf(d->found, sizeof(d->found), found, ap);
+	interp_diag_print(d->found, sizeof(d->found), found, ap);
 	va_end(ap);
 	snprintf(d->wanted, sizeof(d->wanted), "%s", wanted);
 	return -EINVAL;

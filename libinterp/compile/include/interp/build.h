@@ -19,6 +19,7 @@
 #include "interp/program.h"
 
 struct interp_build;
+struct interp_build_from;
 
 /* Lattice points: some minutes. */
 #define INTERP_BUILD_WALKED_MAX	500000000u
@@ -46,7 +47,10 @@ struct interp_build_options {
 					 * are this near to them; 0: they
 					 * stay */
 	bool begins_inside;		/* interp_build_from() will be called:
-					 * before that no thread works on it */
+					 * before that no thread works on it,
+					 * unless it is said by what: */
+	const struct interp_build_from *from;	/* lent until then; NULL: it is
+						 * not known */
 	uint32_t threads;		/* that work on a long program, with the
 					 * caller's: 1 or 2; 0: as many as there
 					 * are processors for them */

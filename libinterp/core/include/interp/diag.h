@@ -10,6 +10,8 @@
 #ifndef INTERP_DIAG_H
 #define INTERP_DIAG_H
 
+#include <stdarg.h>
+#include <stddef.h>
 #include <stdint.h>
 
 struct interp_diag {
@@ -29,5 +31,13 @@ struct interp_diag {
  */
 int interp_diag_say(struct interp_diag *d, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));
+
+/**
+ * interp_diag_print() - vsnprintf() for refusals: %g has up to 15 digits.
+ *
+ * With six of them 89.0000001 would be refused as 89, and 1000000.4 as 1e+06.
+ */
+void interp_diag_print(char *to, size_t size, const char *format, va_list ap)
+	__attribute__((format(printf, 3, 0)));
 
 #endif /* INTERP_DIAG_H */
