@@ -15,6 +15,8 @@
 
 #define RETAIN_US	INT64_C(10000000)
 #define DAY_US		INT64_C(86400000000)
+/* An event of a job goes with it; any other one behind so many newer ones. */
+#define EVENTS_BEHIND	100000
 
 /* Is it a fault of the disk, not of the path that was given? */
 static bool is_of_disk(int err)
@@ -194,6 +196,10 @@ void store_retain(struct store *s, int64_t jobs, int64_t days, int64_t now_us)
 		 "DELETE FROM event WHERE rowid IN (SELECT rowid FROM event "
 		 "WHERE utime<? ORDER BY utime LIMIT 100)",
 		 "i", before);
+	store_do(s, STORE_MAY_GO,
+		 "DELETE FROM event WHERE rowid IN (SELECT rowid FROM event "
+		 "WHERE job='' AND rowid <= (SELECT max(rowid) FROM event) - ? "
+		 "LIMIT 100)", "i", (int64_t)EVENTS_BEHIND);
 	if (!s->in_memory)
 		sqlite3_exec(s->db, "PRAGMA incremental_vacuum(256)", NULL,
 			     NULL, NULL);

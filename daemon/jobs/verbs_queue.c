@@ -56,7 +56,11 @@ void verbs_remove(struct jobs *j, const struct verb *v,
 			      e.now_us);
 		interrupt_init(j);
 		answer_removed(j, c);
-	} else if (job.state != JOB_QUEUED || job.loaded) {
+	} else if (job.state == JOB_QUEUED && job.loaded) {
+		verbs_answer(j, c, REFUSED,
+			     "it is just being loaded; once more when it is "
+			     "ready");
+	} else if (job.state != JOB_QUEUED) {
 		verbs_answer(j, c, REFUSED,
 			     "it has begun or ended; stop ends a job "
 			     "that runs");

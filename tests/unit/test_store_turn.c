@@ -242,18 +242,24 @@ static void a_move_passes_what_does_not_wait(void **state)
 	store_close(s);
 }
 
-static int64_t counted(struct store *s, const char *which)
+static int64_t number(struct store *s, const char *sql)
 {
-	char sql[100];
 	sqlite3_stmt *q = NULL;
 	int64_t n;
 
-	snprintf(sql, sizeof(sql), "SELECT count(*) FROM job WHERE %s", which);
 	assert_int_equal(sqlite3_prepare_v2(s->db, sql, -1, &q, NULL), 0);
 	assert_int_equal(sqlite3_step(q), SQLITE_ROW);
 	n = sqlite3_column_int64(q, 0);
 	sqlite3_finalize(q);
 	return n;
+}
+
+static int64_t counted(struct store *s, const char *which)
+{
+	char sql[100];
+
+	snprintf(sql, sizeof(sql), "SELECT count(*) FROM job WHERE %s", which);
+	return number(s, sql);
 }
 
 static void assert_counts(struct store *s)
@@ -263,6 +269,26 @@ static void assert_counts(struct store *s)
 	assert_int_equal(store_number_of(s, -1, "SELECT ended FROM job_count",
 					 ""),
 			 counted(s, "state IN (" STORE_ENDED ")"));
+}
+
+/* Job 1 has the oldest event; then come 250 of no job. */
+static void an_event_without_a_job_is_not_kept_for_ever(void **state)
+{
+	struct store *s = open_with(30);
+
+	(void)state;
+	assert_int_equal(sqlite3_exec(s->db,
+		"DELETE FROM event WHERE rowid > 1;"
+		"WITH RECURSIVE i(k) AS (SELECT 1 UNION ALL SELECT k + 1 FROM "
+		"i WHERE k < 100200) INSERT INTO event SELECT k, 'note', "
+		"iif(k <= 250, '', 'job-2'), '', 0, '' FROM i",
+		NULL, NULL, NULL), SQLITE_OK);
+	for (int64_t turn = 1; turn <= 4; turn++)
+		store_retain(s, 0, 0, turn * 20000000);
+	assert_int_equal(number(s, "SELECT count(*) FROM event WHERE job=''"),
+			 50);
+	assert_int_equal(number(s, "SELECT count(*) FROM event"), 100001);
+	store_close(s);
 }
 
 /* Through every state, also where it is not written in the end. */
@@ -295,6 +321,7 @@ int main(void)
 #define T(f)	cmocka_unit_test_setup_teardown(f, folder_make, folder_remove)
 		T(what_is_done_to_one_job_costs_the_same_in_a_long_queue),
 		T(a_move_passes_what_does_not_wait),
+		T(an_event_without_a_job_is_not_kept_for_ever),
 		T(the_counts_follow_the_jobs),
 	};
 
