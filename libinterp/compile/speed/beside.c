@@ -74,6 +74,7 @@ struct bend_change {
 	double most;			/* before the node or behind it,
 					 * whatever is more; INFINITY: there is
 					 * no room to see that */
+	double less;			/* the same, less another rounding */
 	double at;			/* at the node: from the bend before it
 					 * to that behind it */
 };
@@ -81,7 +82,7 @@ struct bend_change {
 static struct bend_change bend_change(struct pass *w, const struct look *l,
 				      uint32_t j)
 {
-	double most = -1, all = 0, rounding = 0, way_mm = 0;
+	double most = -1, less = 0, all = 0, rounding = 0, way_mm = 0;
 	struct bend here;
 	struct bows k;
 
@@ -89,7 +90,7 @@ static struct bend_change bend_change(struct pass *w, const struct look *l,
 	here = bend_of(w, &k, 1, j);
 	for (int n = 0; n < 2; n++) {
 		struct bend next;
-		double d;
+		double d, off;
 
 		if (!(k.chord[3 * n].mm > 0))
 			continue;
@@ -99,14 +100,17 @@ static struct bend_change bend_change(struct pass *w, const struct look *l,
 		rounding += next.rounding;
 		way_mm += k.chord[1 + n].way_mm;
 		d = fabs(d);
+		off = next.rounding + here.rounding;
 		if (l->certain)
-			d = larger(d - next.rounding - here.rounding, 0);
+			d = larger(d - off, 0);
 		most = larger(most, d / k.chord[1 + n].way_mm);
+		less = larger(less, (d - off) / k.chord[1 + n].way_mm);
 	}
 	if (most < 0)
-		return (struct bend_change) { INFINITY, INFINITY };
+		return (struct bend_change) { INFINITY, INFINITY, INFINITY };
 	return (struct bend_change) {
-		most, smaller(most, larger(fabs(all) - rounding, 0) / way_mm)
+		most, less,
+		smaller(most, larger(fabs(all) - rounding, 0) / way_mm)
 	};
 }
 
@@ -118,23 +122,32 @@ static double own_mm_s2(const struct pass *w)
 						  w->a_own_mm_s2[1]));
 }
 
+/* A bend, the same less another rounding, and how it changes. */
+struct is_bent {
+	double bend, less, change;
+};
+
 /* If to speed up on it takes jerk, or more acceleration than there is. */
 static void note_bent(struct pass *w, const struct look *l, uint32_t j,
-		      double bend, double change)
+		      const struct is_bent *is)
 {
 	const double v = l->most_mm_s, own = own_mm_s2(w);
 	const double rate = fabs(l->bow.a->rate[j] + l->bow.b->rate[j]) / 2;
 	struct bent *b = &w->bent[j];
 
 	if (!l->certain ||
-	    (3 * bend * v * own <= INTERP_ARC_JERK_BOTH * w->j_mm_s3[j] &&
-	     bend * v * v + rate * own <= w->a_mm_s2[j]))
+	    (3 * is->bend * v * own <= INTERP_ARC_JERK_BOTH * w->j_mm_s3[j] &&
+	     is->bend * v * v + rate * own <= w->a_mm_s2[j]))
 		return;
 	if (!(w->bends >> j & 1))
 		*b = (struct bent) { 0 };
 	w->bends |= 1u << j;
-	b->bend = larger(b->bend, bend);
-	b->change = larger(b->change, change);
+	b->bend = larger(b->bend, is->less);
+	if (is->bend > b->shown) {
+		b->shown = is->bend;
+		b->near_mm = DIP_NEAR * l->window->mm;
+	}
+	b->change = larger(b->change, is->change);
 	b->rate = rate;
 }
 
@@ -150,56 +163,82 @@ static double for_bend_mm_s2(const struct pass *w, const struct look *l,
 	return a * (1 - LEAST_ALONG * smaller(rate * own_mm_s2(w) / a, 1));
 }
 
-static void limit(struct look *l, double round_mm_s, double firm_mm_s)
-{
-	l->round_mm_s = smaller(l->round_mm_s, round_mm_s);
-	l->firm_mm_s = smaller(l->firm_mm_s, firm_mm_s);
-}
-
 /* cbrt(INTERP_ARC_JERK_ROUND) */
 #define ROUND_SPEED	0.66943295
 
-/* By how it changes in a mm.  One that is in this window alone may turn back
- * in it, and so change by more than all of it. */
-static double changes_mm_s(double jerk, double change, double alone_mm_s)
+/* How fast a bend may be followed that changes by so much in a mm.  One that is
+ * in this window alone may turn back in it, and so change by more than all of
+ * it. */
+static double round_mm_s(const struct pass *w, uint32_t j, double change,
+			 double alone_mm_s)
 {
-	const double v = cbrt(jerk / change);
+	const double v = cbrt(w->j_mm_s3[j] / change);
 
 	if (!(change < INFINITY))
 		return alone_mm_s;
 	return larger(ROUND_SPEED * v, smaller(alone_mm_s, v));
 }
 
-void pass_beside(struct pass *w, struct look *l, uint32_t j, double d)
+/* How fast a bend may be followed by itself, if it comes and goes within this
+ * window; @a_mm_s2: what it may take. */
+static double alone_mm_s(const struct pass *w, const struct look *l, uint32_t j,
+			 double a_mm_s2, double d)
+{
+	if (!(d > 0))
+		return INFINITY;
+	return pass_round_mm_s(l->bow.way_mm / d, a_mm_s2, w->j_mm_s3[j] * d);
+}
+
+/* If it goes on. */
+static double on_mm_s(const struct pass *w, uint32_t j, double a_mm_s2,
+		      double bend)
+{
+	const double set_off = INTERP_ARC_JERK_BOTH * w->j_mm_s3[j] /
+			       (3 * bend * LEAST_ALONG * own_mm_s2(w));
+
+	return smaller(set_off, sqrt(a_mm_s2 / bend));
+}
+
+static void limit(struct shown *k, double mm_s, double most_mm_s)
+{
+	k->mm_s = pass_least(k->mm_s, (float)mm_s);
+	k->most_mm_s = pass_least(k->most_mm_s, (float)most_mm_s);
+}
+
+void pass_beside(struct pass *w, struct look *l, uint32_t j, double d,
+		 double less)
 {
 	const double a = for_bend_mm_s2(w, l, j), jerk = w->j_mm_s3[j];
-	const double mm = l->bow.way_mm, bend = d / mm, most = l->most_mm_s;
+	const double mm = l->bow.way_mm, most = l->most_mm_s;
+	struct is_bent is = { d / mm, less / mm, 0 };
+	double alone, alone_less, round, firm;
 	struct bend_change change;
-	double set_off, alone, round, firm;
 	bool goes_on;
 
-	if (most * most * bend <= a &&
-	    most * most * most * bend <= HARDLY * jerk * mm) {
-		note_bent(w, l, j, bend, 0);
+	if (most * most * is.bend <= a &&
+	    most * most * most * is.bend <= HARDLY * jerk * mm) {
+		note_bent(w, l, j, &is);
 		return;
 	}
-	alone = pass_round_mm_s(1 / bend, a, jerk * d);
+	alone = alone_mm_s(w, l, j, a, d);
+	alone_less = alone_mm_s(w, l, j, a, less);
 	change = bend_change(w, l, j);
-	goes_on = 2 * change.most * mm < bend;
-	if (alone * alone * bend >= a) {
+	goes_on = 2 * change.most * mm < is.bend;
+	if (alone * alone * is.bend >= a) {
 		if (goes_on)
-			note_bent(w, l, j, bend, 0);
-		limit(l, INFINITY, alone);
+			note_bent(w, l, j, &is);
+		limit(&l->firm, alone, alone_less);
 		return;
 	}
-	set_off = INTERP_ARC_JERK_BOTH * jerk /
-		  (3 * bend * LEAST_ALONG * own_mm_s2(w));
-	round = changes_mm_s(jerk, change.most, alone);
-	firm = smaller(set_off, sqrt(a / bend));
+	round = round_mm_s(w, j, change.most, alone);
+	firm = on_mm_s(w, j, a, is.bend);
+	is.change = change.at;
 	/* A corner is no bend that takes jerk all of the way. */
 	if (smaller(round, firm) > alone || goes_on)
-		note_bent(w, l, j, bend, change.at);
-	limit(l, round, larger(firm, alone));
+		note_bent(w, l, j, &is);
+	limit(&l->round, round, round_mm_s(w, j, change.less, alone_less));
+	limit(&l->firm, larger(firm, alone),
+	      larger(on_mm_s(w, j, a, is.less), alone_less));
 }
 
 /* Unlike on an arc, what an axis needs along the path and for its bend may
@@ -230,6 +269,6 @@ void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind)
 		if (w->bends >> j & 1)
 			pass_bent_node(w, &(struct bent_node) {
 				w->bent[j], j, before, behind,
-				(float)own_mm_s2(w),
+				(float)own_mm_s2(w), INFINITY,
 			});
 }

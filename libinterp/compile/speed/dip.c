@@ -7,13 +7,17 @@
  * It is measured over windows, so what is real shows at all nodes within such a
  * window.  So a node is no slower by it than the fastest node near to it, on
  * one side or on the other.
+ *
+ * The same is so of a bend, and the last per cent of it counts: where it takes
+ * nine tenths of what an axis can do, one more leaves a tenth less for going
+ * along the path, and a move has the least of its whole way.
  */
 #include "speed/pass.h"
 
 #include <math.h>
 
-/* The share by which that may be faster: a real bend comes and goes, too.  What
- * is no difference of differences is certain, but for little. */
+/* Of what a node shows, another rounding may be wrong; and so may this share of
+ * the speed: a real bend comes and goes, too. */
 #define ROUND_MOST	1.06f
 #define BOW_MOST	1.03f
 
@@ -45,6 +49,7 @@ static float fastest(const struct pass *w, uint32_t i, uint32_t way, bool round)
 {
 	const struct shown *is = shown(w, i, round);
 	const double mm = (double)is->near_mm, here = w->segs[i].s_mm;
+	const float share = round ? ROUND_MOST : BOW_MOST;
 	float most = is->mm_s;
 
 	for (uint32_t n = 0, k = i + way; n < DIP_NODES; n++, k += way) {
@@ -54,7 +59,9 @@ static float fastest(const struct pass *w, uint32_t i, uint32_t way, bool round)
 		if (shown(w, k, round)->mm_s > most)
 			most = shown(w, k, round)->mm_s;
 	}
-	return pass_least(most, (round ? ROUND_MOST : BOW_MOST) * is->mm_s);
+	if (is->most_mm_s > share * is->mm_s)
+		return pass_least(most, is->most_mm_s);
+	return pass_least(most, share * is->mm_s);
 }
 
 double pass_dip_mm_s(const struct pass *w, uint32_t i)
@@ -68,4 +75,62 @@ double pass_dip_mm_s(const struct pass *w, uint32_t i)
 		v = pass_least(v, pass_least(fastest(w, i, UINT32_MAX, round),
 					     fastest(w, i, 1, round)));
 	return (double)v;
+}
+
+/* -- Bends ---------------------------------------------------------------- */
+
+/* What is noted of the column of @b at node @node; *@at: where it was looked
+ * for last.  NULL: nothing, so it hardly bends there. */
+static const struct bent_node *noted(const struct bent_nodes *k,
+				     const struct bent_node *b, int64_t node,
+				     size_t *at)
+{
+	const int way = node > b->behind ? 1 : -1;
+
+	for (size_t m = *at; m < k->n; m += (size_t)way) {
+		const int64_t is = k->at[m].behind;
+
+		if (way * is > way * node)
+			return NULL;
+		*at = m;
+		if (is == node && k->at[m].column == b->column)
+			return &k->at[m];
+	}
+	return NULL;
+}
+
+/* On one side of bend @n. */
+static double least_bend(const struct pass *w, size_t n, int way)
+{
+	const struct bent_nodes *k = &w->bent_nodes;
+	const struct bent_node *b = &k->at[n];
+	double least = b->is.shown;
+	size_t at = n;
+
+	for (int i = 1; i <= DIP_NODES; i++) {
+		const int64_t node = (int64_t)b->behind + way * i;
+		const struct bent_node *next;
+
+		if (!pass_is_near(w, b, node))
+			break;
+		next = noted(k, b, node, &at);
+		if (!next)
+			return 0;
+		least = smaller(least, next->is.shown);
+	}
+	return least;
+}
+
+void pass_dip_bends(struct pass *w)
+{
+	struct bent_nodes *k = &w->bent_nodes;
+
+	for (size_t n = 0; n < k->n; n++) {
+		const double most = larger(least_bend(w, n, -1),
+					   least_bend(w, n, 1));
+		struct bent *is = &k->at[n].is;
+
+		/* One that no other node shows is none. */
+		is->bend = most > 0 ? larger(is->bend, most) : 0;
+	}
 }

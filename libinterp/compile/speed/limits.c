@@ -179,14 +179,15 @@ static float plateau_level(struct pass *w, double v_mm_s)
 	return most;
 }
 
-/* What an axis can do stays as it is. */
+/* What an axis can do stays as it is.  Levels are made of the rest when all is
+ * known (levels.c). */
 static float soft(double most, const struct levels *own)
 {
 	for (uint32_t k = 0; k < own->n; k++) {
 		if (fabs(most - own->at[k]) <= SAME * most)
 			return (float)own->at[k];
 	}
-	return down(most);
+	return (float)most;
 }
 
 /*
@@ -554,8 +555,10 @@ void pass_finish(struct pass *w, struct interp_bends *bends)
 	w->segs[0].a_mm_s2 = w->segs[0].j_mm_s3 = INFINITY;
 	pass_walk(w, w->end, w->end + 1);
 	pass_beside_corner(w, w->end);
+	pass_dip_bends(w);
 	pass_bends(w, bends);
 	pass_soften(w);
+	pass_levels(w);
 	pass_stretches(w);
 	pass_hops(w);
 }

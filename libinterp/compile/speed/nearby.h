@@ -313,7 +313,7 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 	w->bends = 0;
 	if (!all)
 		w->dip = (struct dip) {
-			0, { INFINITY, 0 }, { INFINITY, 0 }, INFINITY
+			0, SHOWN_NONE, SHOWN_NONE, INFINITY
 		};
 	if (curves)
 		v = all ? near_curve(w, last, i, a, b, most, n) : 0;

@@ -153,18 +153,19 @@ COLUMNS_INLINE bool bow_of(const struct pass *w, uint32_t i, struct around *k,
 }
 
 /* The speed at which the axes beside the path can follow a bow.  @d is the
- * change of each column's rate. */
+ * change of each column's rate, @less the same less another rounding. */
 COLUMNS_INLINE double bow_beside_mm_s(struct pass *w, struct look *l,
 				      const double d[INTERP_NAXES],
+				      const double less[INTERP_NAXES],
 				      uint32_t along, uint32_t n)
 {
-	l->round_mm_s = l->firm_mm_s = INFINITY;
+	l->round = l->firm = SHOWN_NONE;
 	/* A column that turns beside the path is limited by itself. */
 	for (uint32_t j = 0; j < n; j++)
 		if (!(along >> j & 1) &&
 		    (!l->certain || d[j] * l->bow.mm > w->tol[j]))
-			pass_beside(w, l, j, d[j]);
-	return smaller(l->round_mm_s, l->firm_mm_s);
+			pass_beside(w, l, j, d[j], less[j]);
+	return (double)pass_least(l->round.mm_s, l->firm.mm_s);
 }
 
 /* The same of those that make its length. */
@@ -231,13 +232,16 @@ COLUMNS_INLINE bool may_bend(const struct pass *w, const struct look *l,
 	return false;
 }
 
-/* The window that shows the slowest. */
-static void note_shown(const struct look *l, double mm_s, struct shown *ret)
+/* The window that shows the slowest, and the least that all of them would
+ * show. */
+static void note_shown(const struct look *l, const struct shown *k,
+		       struct shown *ret)
 {
-	if (mm_s < (double)ret->mm_s)
-		*ret = (struct shown) {
-			(float)mm_s, (float)(DIP_NEAR * l->window->mm)
-		};
+	ret->most_mm_s = pass_least(ret->most_mm_s, k->most_mm_s);
+	if (k->mm_s < ret->mm_s) {
+		ret->mm_s = k->mm_s;
+		ret->near_mm = (float)(DIP_NEAR * l->window->mm);
+	}
 }
 
 /*
@@ -255,12 +259,11 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 	struct look l = { .node = i, .along = along, .most_mm_s = most };
 	bool clear = false;
 
-	w->dip.round.mm_s = w->dip.bow.mm_s = INFINITY;
+	w->dip.round = w->dip.bow = SHOWN_NONE;
 	for (uint32_t j = 0; j < n; j++)
 		per_mm[j] = INFINITY;
 	for (int at = 0; at < PASS_WINDOWS && !clear; at++) {
-		double all[INTERP_NAXES], fast;
-		const double *d;
+		double all[INTERP_NAXES], less[INTERP_NAXES], fast;
 		struct change c;
 
 		l.window = &w->windows[at];
@@ -271,7 +274,7 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 		bow_change(&l.bow, all, n);
 		if (at > 0)
 			no_more(all, per_mm, l.bow.mm, n);
-		fast = smaller(bow_beside_mm_s(w, &l, all, along, n),
+		fast = smaller(bow_beside_mm_s(w, &l, all, all, along, n),
 			       bow_along_mm_s(w, &l.bow, all, along, n));
 		if (fast >= most)
 			enough = smaller(enough, fast);
@@ -285,14 +288,19 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 			no_more(c.d, per_mm, l.bow.mm, n);
 		l.certain = true;
 		clear = is_clear(&c, all, n);
-		d = clear ? all : c.d;
+		for (uint32_t j = 0; j < n; j++)
+			less[j] = larger(2 * c.d[j] - all[j], 0);
 		/* What bends beside the path is noted in any case. */
-		bow_beside_mm_s(w, &l, d, along, n);
+		bow_beside_mm_s(w, &l, c.d, less, along, n);
 		if (isinf(enough)) {
-			fast = bow_along_mm_s(w, &l.bow, d, along, n);
-			note_shown(&l, l.round_mm_s, &w->dip.round);
-			note_shown(&l, smaller(fast, l.firm_mm_s),
-				   &w->dip.bow);
+			note_shown(&l, &l.round, &w->dip.round);
+			note_shown(&l, &l.firm, &w->dip.bow);
+			fast = bow_along_mm_s(w, &l.bow, c.d, along, n);
+			l.firm.mm_s = l.firm.most_mm_s = (float)fast;
+			if (fast < most)
+				l.firm.most_mm_s = (float)bow_along_mm_s(
+					w, &l.bow, less, along, n);
+			note_shown(&l, &l.firm, &w->dip.bow);
 		}
 		change_of(w, at_most, &c, along, n);
 		for (uint32_t j = 0; j < n; j++)
@@ -300,7 +308,8 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 		if (enough < INFINITY && !may_bend(w, &l, per_mm, along, n))
 			break;
 	}
-	note_shown(&l, enough, &w->dip.bow);
+	note_shown(&l, &(struct shown) { (float)enough, 0, (float)enough },
+		   &w->dip.bow);
 	return (double)pass_least(w->dip.bow.mm_s, w->dip.round.mm_s);
 }
 

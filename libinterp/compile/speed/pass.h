@@ -68,6 +68,14 @@ struct bow {
 	double per_mm;			/* as change has it */
 };
 
+/* A limit of a node, how far around the node it shows, and what it were if
+ * another rounding were none of it. */
+struct shown {
+	float mm_s, near_mm, most_mm_s;
+};
+
+#define SHOWN_NONE	((struct shown) { INFINITY, 0, INFINITY })
+
 /* A node, as one window shows it. */
 struct look {
 	uint32_t node, along;
@@ -77,13 +85,17 @@ struct look {
 					 * count */
 	double most_mm_s;		/* more is not asked for */
 	/* Found of the columns beside the path: */
-	double round_mm_s;		/* by the change of a bend */
-	double firm_mm_s;		/* by all else */
+	struct shown round;		/* by the change of a bend */
+	struct shown firm;		/* by all else */
 };
 
 /* How an axis beside the path bends at a node. */
 struct bent {
-	double bend;			/* change of its rate in a mm */
+	double bend;			/* change of its rate in a mm, less
+					 * another rounding; then what nodes
+					 * near to it show of it */
+	double shown, near_mm;		/* as this node shows it, and how far
+					 * around it */
 	double change;			/* of its bend in a mm */
 	double rate;
 };
@@ -94,17 +106,14 @@ struct bent_node {
 	struct bent is;
 	uint32_t column, before, behind;
 	float own_mm_s2;		/* as if nothing bent */
+	float peak_mm_s;		/* no faster, or it is a peak of the
+					 * speed */
 };
 
 struct bent_nodes {
 	struct bent_node *at;
 	size_t n, room;
 	bool lost;			/* there was no memory for one */
-};
-
-/* A limit of a node, and how far around the node it shows. */
-struct shown {
-	float mm_s, near_mm;
 };
 
 /*
@@ -148,9 +157,10 @@ struct change_gate {
 	uint32_t first, node;
 };
 
-/* Nodes to each side of one, and how much of a window. */
+/* Nodes to each side of one, and how much of a window: there half of a corner
+ * shows. */
 #define DIP_NODES	8
-#define DIP_NEAR	0.25
+#define DIP_NEAR	0.5
 #define DIP_RING	32
 
 /* Limits of segments of late that are near to each other. */
@@ -323,9 +333,11 @@ void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
 
 /**
  * pass_beside() - how fast column @j, which does not count in the length, can
- * follow the bow of @l; @d is the change of its rate.
+ * follow the bow of @l; @d is the change of its rate, @less the same less
+ * another rounding.
  */
-void pass_beside(struct pass *w, struct look *l, uint32_t j, double d);
+void pass_beside(struct pass *w, struct look *l, uint32_t j, double d,
+		 double less);
 
 /* The acceleration and jerk that bends beside the path leave for motion along
  * it. */
@@ -358,8 +370,16 @@ void pass_bends(const struct pass *w, struct interp_bends *bends);
 /** pass_soften() - the speeds of all nodes are known. */
 void pass_soften(struct pass *w);
 
+/** pass_levels() - what segments allow along the path is known: make levels of
+ *  it. */
+void pass_levels(struct pass *w);
+
 /** pass_note_dip() - remember what limits node @i. */
 void pass_note_dip(struct pass *w, uint32_t i);
+
+/** pass_dip_bends() - of what bends are noted, leave out what only a rounding
+ *  can be. */
+void pass_dip_bends(struct pass *w);
 
 /** pass_dip_firm() - the nodes behind @first up to @i have this limit, too. */
 void pass_dip_firm(struct pass *w, uint32_t first, uint32_t i, double v_mm_s);
@@ -383,6 +403,14 @@ static inline double pass_from_to(const struct pass *w, uint32_t a, uint32_t b)
 static inline double pass_sees_mm(const struct pass *w)
 {
 	return PASS_SEES * w->windows[0].mm;
+}
+
+/** pass_is_near() - is @node so near to a bend that it shows it? */
+static inline bool pass_is_near(const struct pass *w,
+				const struct bent_node *b, int64_t node)
+{
+	return node > 0 && node <= (int64_t)w->end &&
+	       pass_from_to(w, b->behind, (uint32_t)node) <= b->is.near_mm;
 }
 
 /** pass_away() - the next node at least @mm from node @i in its run, forward if

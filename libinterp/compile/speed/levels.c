@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * levels.c - segments one behind the other that allow nearly the same
+ * acceleration, or jerk, allow the least of it
+ *
+ * So a cycle that looks ahead for less finds no more than a few hundred places.
+ * A move has the least of its whole way, which is no less for that.  Between
+ * steps that are the same everywhere, a rounding would take what is a little
+ * above a step to the next one below.
+ */
+#include "speed/pass.h"
+
+#define STEP	(1 + 1.0f / 32)
+
+/* From segment @from on. */
+struct run {
+	uint32_t from;
+	float least, most;
+};
+
+/* Does it go on with this value? */
+static inline bool run_on(struct run *k, float v)
+{
+	const float least = v < k->least ? v : k->least;
+	const float most = v > k->most ? v : k->most;
+
+	if (most > STEP * least)
+		return false;
+	k->least = least;
+	k->most = most;
+	return true;
+}
+
+static struct run begin(uint32_t from)
+{
+	return (struct run) { from, INFINITY, 0 };
+}
+
+static void level_a(struct interp_seg *segs, const struct run *k, uint32_t to)
+{
+	for (uint32_t i = k->from; i < to && k->most > k->least; i++)
+		if (segs[i].kind < INTERP_BEGIN)
+			segs[i].a_mm_s2 = k->least;
+}
+
+static void level_j(struct interp_seg *segs, const struct run *k, uint32_t to)
+{
+	for (uint32_t i = k->from; i < to && k->most > k->least; i++)
+		if (segs[i].kind < INTERP_BEGIN)
+			segs[i].j_mm_s3 = k->least;
+}
+
+void pass_levels(struct pass *w)
+{
+	struct interp_seg *segs = w->segs;
+	const uint32_t end = w->end + 1;
+	struct run a = begin(0), j = begin(0);
+
+	for (uint32_t i = 0; i < end; i++) {
+		if (segs[i].kind >= INTERP_BEGIN)
+			continue;
+		if (!run_on(&a, segs[i].a_mm_s2)) {
+			level_a(segs, &a, i);
+			a = (struct run) { i, segs[i].a_mm_s2,
+					   segs[i].a_mm_s2 };
+		}
+		if (!run_on(&j, segs[i].j_mm_s3)) {
+			level_j(segs, &j, i);
+			j = (struct run) { i, segs[i].j_mm_s3,
+					   segs[i].j_mm_s3 };
+		}
+	}
+	level_a(segs, &a, end);
+	level_j(segs, &j, end);
+}
