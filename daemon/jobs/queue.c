@@ -258,15 +258,31 @@ static void follow_hunting(struct jobs *j, const struct shm_event *e)
 	}, "job %s: " HUNTING_WHAT "; " HUNTING_ADVICE, q->job.name, e->code);
 }
 
+/* A service that has come reads all of edmd's events again.  Most are known by
+ * their time in the store; these are by their number. */
+static bool is_old(struct jobs *j)
+{
+	const struct link *l = &j->link;
+	const int64_t number = (int64_t)l->events.next;
+
+	if (link_is_repeat(l) &&
+	    store_number(j->store, "followed_of", -1) == l->instance &&
+	    store_number(j->store, "followed", 0) >= number)
+		return true;
+	store_set_number(j->store, "followed_of", l->instance);
+	store_set_number(j->store, "followed", number);
+	return false;
+}
+
 void queue_event(struct jobs *j, const struct shm_event *e)
 {
 	struct queue *q = &j->queue;
 
 	follow_change(j, e);
 	tally_event(j, e, link_is_repeat(&j->link));
-	if (e->kind == SHM_EV_HUNTING)
+	if (e->kind == SHM_EV_HUNTING && !is_old(j))
 		follow_hunting(j, e);
-	if (e->kind == SHM_EV_SELECT)
+	if (e->kind == SHM_EV_SELECT && !is_old(j))
 		follow_select(j, (uint32_t)e->code);
 	queue_ended_event(q, e);
 }

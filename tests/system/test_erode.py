@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The whole way with a gap: a cavity eroded on the simulated sinker."""
 
+import json
 import pathlib
 import re
 
@@ -107,4 +108,11 @@ def test_a_servo_that_hunts_is_warned_of_with_advice(sinker):
     # The same in the history below, once it is there.
     assert re.search(r"job deep.ngc: the gap servo hunts: 20 retracts", told)
     assert "warning    the gap servo hunts" in sinker.ctl("status").stdout
+    # A service that comes reads what edmd has said again, and tells it once.
+    sinker.kill("jobs")
+    sinker.start_jobs("--store", str(sinker.store))
+    c.status_where(lambda s: s.daemon == "ok" and s.job == "deep")
+    places = [e["place_mm"] for e in json.loads(c.ask("events").body)
+              if e["outcome"] == "hunting"]
+    assert places and len(set(places)) == len(places)
     assert sinker.ctl("stop").returncode == 0
