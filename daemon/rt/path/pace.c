@@ -25,8 +25,8 @@
 
 #include <math.h>
 
-/* Beyond so many segments it could always stop. */
-#define SEGMENTS_MAX	512
+/* Beyond so many places that are slower, or softer, it could always stop. */
+#define HOPS_MAX	512
 
 /* Any is less; it keeps what is computed finite. */
 #define A_MAX		1e9
@@ -169,18 +169,50 @@ static double into_mm_s(const struct ahead *k, uint32_t i,
 		       interp_limits_back_into(p, i);
 }
 
+static uint32_t nearer(uint32_t hop, uint16_t other)
+{
+	return other > 0 && other < hop ? other : hop;
+}
+
+/* From segment @i on, how many segments away the next one is that may be entered
+ * slower, be braked on less, or not be entered at all. */
+static uint32_t hop_from(const struct ahead *k, uint32_t i)
+{
+	const struct interp_seg *s = &k->c->cursor.p.segs[i];
+
+	if (s->kind >= INTERP_BEGIN)
+		return 1;
+	if (k->toward < 0)
+		return nearer(nearer(i, s->slower_behind), s->softer_behind);
+	return nearer(nearer(nearer(UINT16_MAX, s->slower_ahead),
+			     s->softer_ahead), s->slower_feed);
+}
+
+/* From where segment @i is entered to where that so many segments away is. */
+static double way_mm(const struct ahead *k, uint32_t i, uint32_t hop)
+{
+	const struct interp_program *p = &k->c->cursor.p;
+	const uint32_t to = i + (uint32_t)k->toward * hop;
+	const struct interp_seg *a = &p->segs[i], *b = &p->segs[to];
+
+	if (to >= p->head->nsegs)
+		return a->length_mm;
+	return k->toward > 0 ? b->s_mm - a->s_mm :
+			       a->s_mm + a->length_mm - b->s_mm - b->length_mm;
+}
+
 /* Up to a place to stand at: what lies between may be braked on less. */
 static void look_along(struct ahead *k, double to_mm)
 {
 	const struct interp_cursor *at = &k->c->cursor;
 	double way = k->toward > 0 ? at->seg.length_mm - at->s_mm : at->s_mm;
 	double goal = k->toward * (to_mm - place_mm(k->c));
-	uint32_t i = at->index;
+	uint32_t i = at->index, hop = 1;
 
 	/* It still has to turn round. */
 	if (goal < -MOVER_ONTO_MM)
 		goal = INFINITY;
-	for (int n = 0; n < SEGMENTS_MAX; n++) {
+	for (int n = 0; n < HOPS_MAX; n++) {
 		const bool meets = goal <= k->left_mm + way;
 		const struct interp_seg *s;
 
@@ -191,15 +223,16 @@ static void look_along(struct ahead *k, double to_mm)
 			break;
 		if (k->toward < 0 && i == 0)
 			break;
-		i += (uint32_t)k->toward;
+		i += (uint32_t)k->toward * hop;
 		s = &at->p.segs[i];
 		if (i >= at->p.head->nsegs || stops(k, i, s))
 			break;
-		way = s->length_mm;
-		if (s->kind >= INTERP_BEGIN)
-			continue;
-		meet(k, into_mm_s(k, i, s));
-		k->a_mm_s2 = smaller(k->a_mm_s2, (double)s->a_mm_s2);
+		if (s->kind < INTERP_BEGIN) {
+			meet(k, into_mm_s(k, i, s));
+			k->a_mm_s2 = smaller(k->a_mm_s2, (double)s->a_mm_s2);
+		}
+		hop = hop_from(k, i);
+		way = way_mm(k, i, hop);
 	}
 	meet_stop(k);
 }

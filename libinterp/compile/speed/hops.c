@@ -26,12 +26,13 @@ static inline uint16_t hop_on(uint16_t hop)
 	return (uint16_t)(hop + (hop < HOP_MAX));
 }
 
-/* Actions stop the way, and so may a cut after what is positioned. */
+/* Actions stop the way.  So may a cut after what is positioned, and, for the gap
+ * servo, what is positioned after a cut. */
 static bool may_stop(const struct interp_seg *s)
 {
 	return s->kind >= INTERP_BEGIN ||
-	       (!(s->flags & INTERP_SEG_RAPID) &&
-		s[-1].kind < INTERP_BEGIN && s[-1].flags & INTERP_SEG_RAPID);
+	       (s[-1].kind < INTERP_BEGIN &&
+		(s->flags ^ s[-1].flags) & INTERP_SEG_UNCUT);
 }
 
 /* Entered over the node before it. */
@@ -49,15 +50,16 @@ static inline float feed_of(const struct interp_seg *s)
 /* What of a segment is compared with its neighbours. */
 struct pace {
 	float into, feed;		/* feed: INFINITY for a rapid */
-	bool moves, rapid;
+	bool moves;
+	uint8_t uncut;			/* those of its flags */
 };
 
 static inline struct pace pace_of(const struct interp_seg *s)
 {
 	const bool moves = s->kind < INTERP_BEGIN;
-	const bool rapid = s->flags & INTERP_SEG_RAPID;
+	const uint8_t uncut = s->flags & INTERP_SEG_UNCUT;
 
-	return (struct pace) { moves ? into(s) : 0, feed_of(s), moves, rapid };
+	return (struct pace) { moves ? into(s) : 0, feed_of(s), moves, uncut };
 }
 
 static inline uint16_t hop_ahead(const struct interp_seg *s,
@@ -69,7 +71,7 @@ static inline uint16_t hop_ahead(const struct interp_seg *s,
 
 	if (!now->moves)
 		return 1;
-	if (next->moves && (!now->rapid || next->rapid) && next->into == v)
+	if (next->moves && now->uncut == next->uncut && next->into == v)
 		return hop_on(s[1].slower_ahead);
 	while (m < HOP_MAX && !may_stop(s + m) && into(s + m) >= v)
 		m += s[m].slower_ahead;
