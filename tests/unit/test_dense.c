@@ -193,7 +193,7 @@ static const struct wave waves[] = {
 
 /* Time of each, of that in lines of 0.2 mm. */
 static const double waves_most[] = {
-	1.005, 1.005, 1.01, 1.01, 1.005, 1.005, 1.005,
+	1.005, 1.005, 1.011, 1.01, 1.005, 1.005, 1.005,
 };
 
 #define NWAVES	(sizeof(waves) / sizeof(waves[0]))

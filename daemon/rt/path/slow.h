@@ -2,7 +2,7 @@
 /*
  * slow.h - a lower ceiling of speed, and more acceleration under it
  *
- * Where axes bend beside the path, more acceleration is left at a lower speed
+ * Where axes bend, more acceleration is left at a lower speed
  * (interp/bends.h).  A move that is too short for its speed gains by that.
  *
  * Private to ahead.c and slow.c.  Threads: RT-safe.

@@ -15,15 +15,6 @@ static bool ends(const struct interp_build *b)
 	return s[b->segs.n - 1].kind == INTERP_END;
 }
 
-/* Axes bend beside X Y Z only if there are others. */
-static bool may_bend(const struct interp_build *b)
-{
-	for (uint32_t j = 0; j < b->naxes; j++)
-		if (b->naxes > 1 && b->column[j] > INTERP_Z)
-			return true;
-	return false;
-}
-
 static struct interp_program_head layout(const struct interp_build *b)
 {
 	const size_t nsegs = b->segs.n + !ends(b);
@@ -41,7 +32,7 @@ static struct interp_program_head layout(const struct interp_build *b)
 		.npieces = b->pieces.n,
 		.nstops = b->stops.n,
 		.nnumbers = b->numbers.n,
-		.nbends = may_bend(b) ? (nsegs - 1) / INTERP_BENDS_SEGS + 1 : 0,
+		.nbends = b->naxes > 1 ? (nsegs - 1) / INTERP_BENDS_SEGS + 1 : 0,
 		.naxes = b->naxes,
 		.strategy = b->o.strategy,
 		.tolerance_milli = b->o.tolerance_milli,

@@ -30,25 +30,38 @@ static struct interp_bends bends_of(const struct pass *w,
 	return b;
 }
 
+/* Of all runs that it is on. */
+static void join(const struct pass *w, const struct bent_node *k,
+		 struct interp_bends *bends)
+{
+	const struct interp_bends b = bends_of(w, k);
+	const uint32_t to = k->behind / INTERP_BENDS_SEGS;
+
+	for (uint32_t i = k->before / INTERP_BENDS_SEGS; i <= to; i++)
+		interp_bends_join(&bends[i], &b);
+}
+
 void pass_bends(const struct pass *w, struct interp_bends *bends)
 {
 	const struct bent_nodes *k = &w->bent_nodes;
+	const struct bent_ways *ways = &w->bent_ways;
 	const size_t n = w->p->head->nbends;
 
-	if (k->n == 0 || k->lost) {
+	if (n == 0)
+		return;
+	if (k->n + ways->n == 0 || k->lost || ways->lost) {
 		memset(bends, 0, n * sizeof(*bends));
 		return;
 	}
 	for (size_t i = 0; i < n; i++)
 		bends[i] = INTERP_BENDS_NONE;
-	for (uint32_t i = 0; i < w->p->head->nsegs && n > 0; i++)
+	for (uint32_t i = 0; i < w->p->head->nsegs; i++)
 		note_own(&bends[i / INTERP_BENDS_SEGS], &w->segs[i]);
-	for (size_t i = 0; i < k->n && n > 0; i++) {
-		const struct interp_bends b = bends_of(w, &k->at[i]);
+	for (size_t i = 0; i < k->n; i++)
+		join(w, &k->at[i], bends);
+	for (size_t i = 0; i < ways->n; i++) {
+		const struct bent_node b = pass_way_node(&ways->at[i]);
 
-		interp_bends_join(&bends[k->at[i].before / INTERP_BENDS_SEGS],
-				  &b);
-		interp_bends_join(&bends[k->at[i].behind / INTERP_BENDS_SEGS],
-				  &b);
+		join(w, &b, bends);
 	}
 }

@@ -17,6 +17,15 @@
 
 #include <math.h>
 
+/* Bends that turn by more within a window are tight. */
+#define TIGHT		0.1
+
+/* So much longer is a path by roundings at most. */
+#define LONGER_MOST	1.02
+
+/* If a rounding hides no more of a bend, a wider window shows no more. */
+#define CLEAR		1.03
+
 /* The columns that are looked at, and the greatest speed that is asked for. */
 struct asked {
 	uint32_t along;
@@ -43,8 +52,15 @@ static double follows_mm_s(const struct pass *w, uint32_t j, double step,
 static uint32_t before(const struct pass *w, uint32_t i, double mm)
 {
 	const double most = w->segs[i].s_mm - mm;
-	uint32_t from = w->run;
+	uint32_t step = 1, from = i;
 
+	if (i <= w->run)
+		return i;
+	do {
+		i = from;
+		from = i - w->run > step ? i - step : w->run;
+		step *= 2;
+	} while (from > w->run && w->segs[from].s_mm > most);
 	while (from + 1 < i) {
 		const uint32_t k = from + (i - from) / 2;
 
@@ -116,82 +132,190 @@ static bool go_to(const struct pass *w, uint32_t i, uint32_t along, double mm,
 
 /* -- What it shows -------------------------------------------------------- */
 
-/* What the bends of all columns have in common: that before the node, at it,
- * and behind it. */
+/* The bends before the node, at it, and behind it. */
+enum { BEFORE, AT, BEHIND, BENDS };
+
+/* What all columns of them have in common. */
 struct bends {
-	double per_mm[3];		/* of the change of a rate */
+	const struct chord *chord[BENDS + 1];
+	double per_mm[BENDS];		/* of the change of a rate; 0: there is
+					 * none */
 	double mm;			/* from the first to the last one; 0:
 					 * there are not all of them */
-	double rounding;		/* of a column whose rounding is 1 */
+	double rounding[BENDS];		/* of a column whose rounding is 1 */
 };
 
 static void bends_of(const struct changing *c, struct bends *ret)
 {
-	double rounding[3];
-
 	*ret = (struct bends) { .mm = 0 };
-	for (uint32_t n = 0; n < 4; n++)
-		if (!(c->chord[n].mm > 0))
-			return;
-	for (uint32_t n = 0; n < 3; n++) {
-		const struct chord *a = chord_at(c, n), *b = chord_at(c, n + 1);
+	for (uint32_t n = 0; n <= BENDS; n++)
+		ret->chord[n] = chord_at(c, n);
+	for (uint32_t n = 0; n < BENDS; n++) {
+		const struct chord *a = ret->chord[n], *b = ret->chord[n + 1];
 
+		if (!(a->mm > 0 && b->mm > 0))
+			continue;
 		ret->per_mm[n] = 2 / (a->mm + b->mm);
-		rounding[n] = (a->per_mm + b->per_mm) * ret->per_mm[n];
+		ret->rounding[n] = (a->per_mm + b->per_mm) * ret->per_mm[n];
 	}
-	ret->mm = chord_at(c, 1)->mm + chord_at(c, 2)->mm;
-	ret->rounding = rounding[0] + rounding[2];
+	if (ret->per_mm[BEFORE] > 0 && ret->per_mm[BEHIND] > 0)
+		ret->mm = ret->chord[AT]->mm + ret->chord[BEHIND]->mm;
 }
 
-static double bend(const struct changing *c, const struct bends *k, uint32_t n,
-		   uint32_t j)
+/* Of column @j. */
+static inline void bend(const struct bends *k, uint32_t j, double ret[BENDS])
 {
-	return (chord_at(c, n + 1)->h.rate[j] - chord_at(c, n)->h.rate[j]) *
-	       k->per_mm[n];
+	for (uint32_t n = 0; n < BENDS; n++)
+		ret[n] = (k->chord[n + 1]->h.rate[j] - k->chord[n]->h.rate[j]) *
+			 k->per_mm[n];
 }
 
 /*
  * From the bend before the node to that behind it.  What is a change on one
  * side of the node only is a corner beside it.
  */
-static double change_of(const struct changing *c, const struct bends *k,
-			uint32_t j)
+static inline double change_of(const double b[BENDS])
 {
-	const double a = bend(c, k, 0, j), at = bend(c, k, 1, j);
-	const double b = bend(c, k, 2, j);
+	return smaller(fabs(b[BEHIND] - b[BEFORE]),
+		       2 * smaller(fabs(b[AT] - b[BEFORE]),
+				   fabs(b[BEHIND] - b[AT])));
+}
 
-	return smaller(fabs(b - a), 2 * smaller(fabs(at - a), fabs(b - at)));
+/* How much of the bend at the node is certain, squared; no more than that; and
+ * the same times what it is to both sides. */
+struct sure {
+	double is2, most2, before, behind;
+	uint32_t moves;			/* the columns that move */
+};
+
+/* Of one more column. */
+static inline void add_bend(const struct bends *k, const double b[BENDS],
+			    double tol, double d, struct sure *ret)
+{
+	const double most = fabs(b[AT]) + tol * k->rounding[AT];
+	const double way = b[AT] > 0 ? d : -d;
+
+	ret->is2 += d * d;
+	ret->most2 += most * most;
+	ret->before += way * b[BEFORE] - d * tol * k->rounding[BEFORE];
+	ret->behind += way * b[BEHIND] - d * tol * k->rounding[BEHIND];
+}
+
+/* What of the bend at the node goes on to both sides of it, or, at an end of the
+ * run, to the one that there is.  A corner does not. */
+static double goes_on(const struct bends *k, const struct sure *sure)
+{
+	double least = INFINITY;
+
+	if (k->per_mm[BEFORE] > 0)
+		least = sure->before;
+	if (k->per_mm[BEHIND] > 0)
+		least = smaller(least, sure->behind);
+	return least < INFINITY ?
+	       larger(smaller(2 * least / sure->is2, 1), 0) : 0;
+}
+
+/* Does a bend leave less for going along it? */
+static bool leaves_less(const struct pass *w, const struct weakest *k,
+			double bend, double v)
+{
+	const double own = smaller(w->a_own_mm_s2[0], w->a_own_mm_s2[1]);
+
+	return 3 * bend * v * own >
+		       INTERP_ARC_JERK_BOTH * k->j_mm_s3 ||
+	       bend * v * v > PASS_HARDLY * k->a_mm_s2;
+}
+
+/* The bend of the path: as an arc of it. */
+static void show_bend(const struct pass *w, const struct bends *k,
+		      const struct sure *sure, struct changing *c)
+{
+	const struct weakest weakest = pass_weakest(w, sure->moves);
+	const double is = sqrt(sure->is2);
+	double share;
+
+	c->bend_most = smaller(c->bend_most, sqrt(sure->most2));
+	if (c->bend_most > CLEAR * is &&
+	    leaves_less(w, &weakest, c->bend_most, c->most_mm_s))
+		c->clear = false;
+	share = is > 0 ? smaller(goes_on(k, sure), c->bend_most / is) : 0;
+	if (share > 0)
+		c->arc_mm_s = pass_arc_mm_s(&weakest, share * is);
+	c->v_mm_s = smaller(c->v_mm_s, c->arc_mm_s);
+	for (uint32_t j = 0; j < w->n; j++)
+		c->bent[j].bend *= share;
+}
+
+/* How fast column @j can follow what changes, and whether a wider window may
+ * show more. */
+static inline void show_change(const struct pass *w, uint32_t j,
+			       const struct bends *k, double change,
+			       struct changing *c)
+{
+	const double v = c->most_mm_s, vvv = v * v * v, most = c->per_mm[j];
+	const double enough = PASS_CHANGE_SHARE * w->j_mm_s3[j];
+	const double off = w->tol[j] *
+			   (k->rounding[BEFORE] + k->rounding[BEHIND]);
+	const double step = smaller(change - off, most * k->mm);
+
+	if (vvv * step > enough * k->mm)
+		c->v_mm_s = smaller(c->v_mm_s,
+				    follows_mm_s(w, j, step, k->mm));
+	c->per_mm[j] = smaller(most, (change + off) / k->mm);
+	if (vvv * c->per_mm[j] > enough)
+		c->clear = false;
+	c->bent[j].change = larger(step, 0) / k->mm;
+}
+
+COLUMNS_INLINE void show_columns(const struct pass *w, struct changing *c,
+				 uint32_t along, uint32_t n)
+{
+	struct sure sure = { .moves = 0 };
+	struct bends k;
+
+	bends_of(c, &k);
+	for (uint32_t j = 0; j < n; j++) {
+		struct bent *is = &c->bent[j];
+		double b[BENDS];
+
+		*is = (struct bent) { 0 };
+		if (!(along >> j & 1))
+			continue;
+		bend(&k, j, b);
+		is->rate = fabs(k.chord[AT]->h.rate[j] +
+				k.chord[BEHIND]->h.rate[j]) / 2;
+		is->bend = larger(fabs(b[AT]) - w->tol[j] * k.rounding[AT], 0);
+		sure.moves |= (uint32_t)(is->rate > 0 || fabs(b[AT]) > 0) << j;
+		add_bend(&k, b, w->tol[j], is->bend, &sure);
+		if (k.mm > 0)
+			show_change(w, j, &k, change_of(b), c);
+	}
+	/* At an end of the run, wide windows see corners on one side only. */
+	if (k.mm > 0 ||
+	    (c <= &w->changing[PASS_CHANGE_FIRST] && k.per_mm[AT] > 0))
+		show_bend(w, &k, &sure, c);
+	else
+		for (uint32_t j = 0; j < n; j++)
+			c->bent[j].bend = 0;
 }
 
 /* No column bends more than @narrower says, which may be NULL. */
 static void show(const struct pass *w, const struct asked *asked,
 		 const struct changing *narrower, struct changing *c)
 {
-	const double v = asked->most_mm_s, vvv = v * v * v;
-	struct bends k;
-
-	bends_of(c, &k);
-	c->most_mm_s = v;
-	c->v_mm_s = INFINITY;
+	c->most_mm_s = asked->most_mm_s;
+	c->v_mm_s = c->arc_mm_s = INFINITY;
 	c->clear = true;
-	for (uint32_t j = 0; j < w->n; j++) {
-		const double most = narrower ? narrower->per_mm[j] : INFINITY;
-		const double enough = PASS_CHANGE_SHARE * w->j_mm_s3[j];
-		double change, off, step;
+	c->bend_most = narrower ? narrower->bend_most : INFINITY;
+	for (uint32_t j = 0; j < w->n; j++)
+		c->per_mm[j] = narrower ? narrower->per_mm[j] : INFINITY;
+	BY_WAYS(w->n, asked->along, show_columns, w, c);
+}
 
-		c->per_mm[j] = most;
-		if (!(asked->along >> j & 1 && k.mm > 0))
-			continue;
-		change = change_of(c, &k, j);
-		off = w->tol[j] * k.rounding;
-		step = smaller(change - off, most * k.mm);
-		if (vvv * step > enough * k.mm)
-			c->v_mm_s = smaller(c->v_mm_s,
-					    follows_mm_s(w, j, step, k.mm));
-		c->per_mm[j] = smaller(most, (change + off) / k.mm);
-		if (vvv * c->per_mm[j] > enough)
-			c->clear = false;
-	}
+static bool is_tight(const struct pass *w)
+{
+	return w->changing[PASS_CHANGE_FIRST].bend_most *
+		       w->windows[PASS_CHANGE_FIRST].mm > TIGHT;
 }
 
 /* Where the narrowest window limits, that may be a corner beside the node: then
@@ -202,7 +326,8 @@ static void show_near(struct pass *w, const struct asked *asked,
 	struct changing *near = &w->changing[PASS_CHANGE_FIRST - 1];
 
 	show(w, asked, NULL, c);
-	if (!(c->v_mm_s < asked->most_mm_s))
+	near->known = false;
+	if (!(c->v_mm_s < asked->most_mm_s) && !is_tight(w))
 		return;
 	begin(w, c->node[0], asked->along,
 	      w->windows[PASS_CHANGE_FIRST - 1].mm, near);
@@ -210,10 +335,73 @@ static void show_near(struct pass *w, const struct asked *asked,
 	show(w, asked, near, c);
 }
 
+/* A tight bend is over before a wider window shows it.  In a narrower one, how
+ * it changes is no more than roundings. */
+static void look_at_tight(struct pass *w, uint32_t i, const struct asked *asked)
+{
+	struct changing *near = &w->changing[PASS_CHANGE_FIRST - 1];
+
+	if (go_to(w, i, asked->along, w->windows[PASS_CHANGE_FIRST - 1].mm,
+		  near) || asked->most_mm_s > near->most_mm_s)
+		show(w, asked, NULL, near);
+	if (near->node[1] < w->gate.next)
+		w->gate.next = near->node[1];
+	w->gate.v_mm_s = smaller(w->gate.v_mm_s, near->arc_mm_s);
+}
+
+/* A path that is rounded goes to and fro, and is longer than its chords.  An
+ * axis follows the chords. */
+static double longer(const struct pass *w)
+{
+	const struct changing *c = &w->changing[PASS_CHANGE_FIRST];
+	const struct chord *a = chord_at(c, 1), *b = chord_at(c, 2);
+	const double mm = a->mm + b->mm;
+
+	return mm > 0 ? smaller(pass_from_to(w, a->from, b->to) / mm,
+				LONGER_MOST) : 1;
+}
+
+/* What windows up to @wide show of the bend, from node @i on until more is
+ * asked. */
+static void note_way(struct pass *w, uint32_t i, const struct asked *asked,
+		     uint32_t wide)
+{
+	const struct changing *near = &w->changing[PASS_CHANGE_FIRST];
+	const double by = longer(w);
+	struct bent is[INTERP_NAXES] = { 0 };
+	double sum = 0;
+
+	w->gate.v_mm_s *= by;
+
+	for (uint32_t j = 0; j < w->n; j++) {
+		if (!(asked->along >> j & 1))
+			continue;
+		is[j].rate = near->bent[j].rate;
+		for (uint32_t at = PASS_CHANGE_FIRST; at <= wide; at++) {
+			const struct bent *b = &w->changing[at].bent[j];
+
+			is[j].bend = larger(is[j].bend, b->bend);
+			is[j].change = larger(is[j].change, b->change);
+		}
+		if (is_tight(w))
+			is[j].bend = larger(is[j].bend, near[-1].bent[j].bend);
+		sum += is[j].bend * is[j].bend;
+		is[j].rate /= by;
+		is[j].bend /= by * by;
+		is[j].change /= by * by * by;
+	}
+	pass_note_way(w, i - 1, w->gate.next - 1, is,
+		      smaller(asked->most_mm_s, w->gate.v_mm_s));
+	sum = sqrt(sum);
+	pass_way_begin(w, i, sum, larger(near->bend_most - sum, 0),
+		       asked->most_mm_s);
+}
+
 double pass_change(struct pass *w, uint32_t i, uint32_t along,
 		   double most_mm_s)
 {
 	const struct asked asked = { along, most_mm_s };
+	uint32_t wide = PASS_CHANGE_FIRST;
 	const struct changing *narrower = NULL;
 	struct change_gate *gate = &w->gate;
 
@@ -233,10 +421,14 @@ double pass_change(struct pass *w, uint32_t i, uint32_t along,
 		if (c->node[1] < gate->next)
 			gate->next = c->node[1];
 		gate->v_mm_s = smaller(gate->v_mm_s, c->v_mm_s);
+		wide = at;
 		if (c->clear)
 			break;
 		narrower = c;
 	}
+	if (is_tight(w))
+		look_at_tight(w, i, &asked);
+	note_way(w, i, &asked, wide);
 	return gate->v_mm_s;
 }
 
@@ -244,7 +436,9 @@ void pass_change_anew(struct pass *w, uint32_t i)
 {
 	for (uint32_t at = 0; at < PASS_WINDOWS; at++)
 		w->changing[at].known = false;
+	pass_way_end(w, i - 1);
 	w->gate.next = i;
 	w->gate.node = 0;
+	w->gate.way.to_mm = -INFINITY;
 	w->gate.most_mm_s = w->gate.v_mm_s = INFINITY;
 }

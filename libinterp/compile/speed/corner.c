@@ -118,7 +118,7 @@ static void raise_node(struct pass *w, const struct beside *k, uint32_t i)
 	}
 	v = smaller(over_mm_s(w, k->at, i),
 		    pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first));
-	most = pass_least(k->most_mm_s, pass_level(w, v));
+	most = pass_least(k->most_mm_s, (float)v);
 	if (most <= s[-1].node_mm_s)
 		return;
 	s[-1].node_mm_s = most;
@@ -184,7 +184,7 @@ void pass_beside_corner(struct pass *w, uint32_t known)
 		return;
 	at = alone ? lone.at : sharpest(w, at);
 	if (alone)
-		w->segs[at - 1].node_mm_s = pass_level(w, lone.mm_s);
+		w->segs[at - 1].node_mm_s = (float)lone.mm_s;
 	pass_change_anew(w, pass_away(w, at, 1, far));
 	again = *w;
 	pass_change_anew(&again, UINT32_MAX);
@@ -194,4 +194,5 @@ void pass_beside_corner(struct pass *w, uint32_t known)
 			sharp ? INFINITY : lone.beyond_mm_s[n],
 		});
 	w->bent_nodes = again.bent_nodes;
+	w->bent_ways = again.bent_ways;
 }

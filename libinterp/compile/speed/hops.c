@@ -26,8 +26,8 @@ static inline uint16_t hop_on(uint16_t hop)
 	return (uint16_t)(hop + (hop < HOP_MAX));
 }
 
-/* Actions stop the way.  So may a cut after what is positioned, and, for the gap
- * servo, what is positioned after a cut. */
+/* Actions stop the way.  So may a cut after what is positioned, and, for the
+ * gap servo, what is positioned after a cut. */
 static bool may_stop(const struct interp_seg *s)
 {
 	return s->kind >= INTERP_BEGIN ||

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * levels.c - segments one behind the other that allow nearly the same
- * acceleration, or jerk, allow the least of it
+ * acceleration, or jerk, allow the least of it; and so do nodes that allow
+ * nearly the same speed
  *
  * So a cycle that looks ahead for less finds no more than a few hundred places.
  * A move has the least of its whole way, which is no less for that.  Between
@@ -43,11 +44,34 @@ static void level_a(struct interp_seg *segs, const struct run *k, uint32_t to)
 			segs[i].a_mm_s2 = k->least;
 }
 
+static void level_node(struct interp_seg *segs, const struct run *k,
+		       uint32_t to)
+{
+	for (uint32_t i = k->from; i < to && k->most > k->least; i++)
+		segs[i].node_mm_s = k->least;
+}
+
 static void level_j(struct interp_seg *segs, const struct run *k, uint32_t to)
 {
 	for (uint32_t i = k->from; i < to && k->most > k->least; i++)
 		if (segs[i].kind < INTERP_BEGIN)
 			segs[i].j_mm_s3 = k->least;
+}
+
+/* A node without a limit ends a run of them. */
+static void level_nodes(struct interp_seg *segs, uint32_t end)
+{
+	struct run v = begin(0);
+
+	for (uint32_t i = 0; i < end; i++) {
+		const float is = segs[i].node_mm_s;
+
+		if (is < INFINITY && run_on(&v, is))
+			continue;
+		level_node(segs, &v, i);
+		v = (struct run) { i, is, is };
+	}
+	level_node(segs, &v, end);
 }
 
 void pass_levels(struct pass *w)
@@ -72,4 +96,5 @@ void pass_levels(struct pass *w)
 	}
 	level_a(segs, &a, end);
 	level_j(segs, &j, end);
+	level_nodes(segs, end);
 }

@@ -68,7 +68,8 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 			     .n = p->head->naxes, .at = 1,
 			     .turn_least = { INFINITY, INFINITY },
 			     .a_linear_mm_s2 = INFINITY,
-			     .gate.jerk_mm_s3 = INFINITY,
+			     .gate = { .a_mm_s2 = INFINITY,
+				       .jerk_mm_s3 = INFINITY },
 			     .soft = { INFINITY, 0, INFINITY, 0 } };
 	heading_ways_init(&w->ways, p);
 	for (uint32_t j = 0; j < w->n; j++) {
@@ -81,6 +82,7 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 		w->v_mm_s[j] = m->v_max_mm_s;
 		w->a_mm_s2[j] = m->a_max_mm_s2;
 		w->j_mm_s3[j] = m->j_max_mm_s3;
+		w->gate.a_mm_s2 = smaller(w->gate.a_mm_s2, m->a_max_mm_s2);
 		w->gate.jerk_mm_s3 = smaller(w->gate.jerk_mm_s3,
 					     m->j_max_mm_s3);
 		w->step_mm_s[j] = smaller(
@@ -130,11 +132,6 @@ static float level(const struct pass *w, double v_mm_s)
 			return (float)(own * (1 - 2 * SAME));
 	}
 	return down(v_mm_s);
-}
-
-float pass_level(const struct pass *w, double v_mm_s)
-{
-	return v_mm_s < INFINITY ? level(w, v_mm_s) : INFINITY;
 }
 
 /* So many limits that are near to each other are a plateau. */
@@ -336,19 +333,28 @@ COLUMNS_INLINE void limit_seg(struct pass *w, uint32_t i,
 		s->feed_mm_s = s->feed_max_mm_s;
 }
 
-void pass_soften_seg(struct pass *w, uint32_t i, const struct leave *left)
+void pass_soften_segs(struct pass *w, uint32_t from, uint32_t to,
+		      const struct leave *left)
 {
-	struct interp_seg *s = &w->segs[i];
+	const float a = soft(left->a_mm_s2, &w->a_levels);
+	const float j = soft(left->j_mm_s3, &w->j_levels);
 
-	s->a_mm_s2 = pass_least(s->a_mm_s2, soft(left->a_mm_s2, &w->a_levels));
-	s->j_mm_s3 = pass_least(s->j_mm_s3, soft(left->j_mm_s3, &w->j_levels));
-	note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
+	for (uint32_t i = from; i <= to; i++) {
+		struct interp_seg *s = &w->segs[i];
+
+		if (s->kind >= INTERP_BEGIN)
+			continue;
+		s->a_mm_s2 = pass_least(s->a_mm_s2, a);
+		s->j_mm_s3 = pass_least(s->j_mm_s3, j);
+	}
+	w->soft.a_least = smaller(w->soft.a_least, left->a_mm_s2);
+	w->soft.j_least = smaller(w->soft.j_least, left->j_mm_s3);
 }
 
 /* Those from the end of segment @first to the start of segment @i. */
 static void limit_nodes(struct pass *w, uint32_t first, uint32_t i, double v)
 {
-	const float most = v < INFINITY ? level(w, v) : INFINITY;
+	const float most = (float)v;
 
 	/* Mostly one. */
 	for (uint32_t k = i; k-- > first; )
@@ -369,7 +375,6 @@ static void look_for_dip(struct pass *w, uint32_t i)
 {
 	const uint32_t k = i - DIP_NODES;
 	struct interp_seg *s;
-	float most;
 	double v;
 
 	pass_note_dip(w, i);
@@ -380,9 +385,8 @@ static void look_for_dip(struct pass *w, uint32_t i)
 	if (s->node_mm_s >= pass_least(s->feed_max_mm_s, s[1].feed_max_mm_s))
 		return;
 	v = pass_dip_mm_s(w, k);
-	most = v < INFINITY ? level(w, v) : INFINITY;
-	if (v > 0 && most > s->node_mm_s)
-		s->node_mm_s = most;
+	if (v > (double)s->node_mm_s)
+		s->node_mm_s = (float)v;
 }
 
 /* The node in front of segment @i; @last is the segment before it that

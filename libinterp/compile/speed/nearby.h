@@ -259,6 +259,44 @@ COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
 	       v * v * v * turn * turn < w->turn_least[1];
 }
 
+/* Does a bend, squared, leave less for going along it? */
+static inline bool near_leaves_less(const struct pass *w, double bend2,
+				    double v)
+{
+	const double own = smaller(w->a_own_mm_s2[0], w->a_own_mm_s2[1]);
+	const double a = PASS_HARDLY * w->gate.a_mm_s2;
+	const double j = INTERP_ARC_JERK_BOTH / 3 * w->gate.jerk_mm_s3;
+
+	return bend2 * v * v * own * own > j * j ||
+	       bend2 * v * v * v * v > a * a;
+}
+
+/* At a node between lines that are their own chords: does the path go on
+ * bending as it was noted last?  Mostly it does. */
+static inline bool near_goes_on(const struct pass *w, uint32_t i, double bend2,
+				double v)
+{
+	const struct way_on *k = &w->gate.way;
+
+	return w->segs[i].s_mm < k->to_mm && bend2 >= k->bend2[0] &&
+	       bend2 <= k->bend2[1] && v <= k->most_mm_s;
+}
+
+/* Then note that; the speed is the same. */
+static inline double near_way_on(struct pass *w, uint32_t i,
+				 const struct heading *a,
+				 const struct heading *b)
+{
+	if (w->segs[i].s_mm < w->gate.way.same_mm)
+		pass_way_to(w, i);
+	else
+		pass_way_on(w, i, a, b);
+	return w->gate.way.v_mm_s;
+}
+
+/* So that turning a little does not ask again, more is asked for. */
+#define NEAR_MORE	1.2
+
 /*
  * As pass_change().  Where no window is narrower than the lines, the change
  * from the node before the last one shows whether it has to be asked.
@@ -272,7 +310,7 @@ COLUMNS_INLINE double near_change(struct pass *w, uint32_t last, uint32_t i,
 	struct change_gate *k = &w->gate;
 	const double v = most_mm_s;
 	double *was = k->bend[i & 1];
-	double sum = 0, per_mm, most;
+	double sum = 0, bend2 = 0, per_mm, most;
 
 	if (i < k->next && v <= k->most_mm_s)
 		return k->v_mm_s;
@@ -287,14 +325,45 @@ COLUMNS_INLINE double near_change(struct pass *w, uint32_t last, uint32_t i,
 		const double d = bend - was[j];
 
 		was[j] = bend;
-		if (both >> j & 1)
+		if (both >> j & 1) {
 			sum += d * d;
+			bend2 += bend * bend;
+		}
 	}
 	if (i < k->first + 2)
 		return pass_change(w, i, both, v);
 	most = k->jerk_mm_s3 * (s[i].s_mm - s[i - 2].s_mm);
-	return v * v * v * v * v * v * sum <= most * most ?
-	       INFINITY : pass_change(w, i, both, v);
+	if (v * v * v * v * v * v * sum > most * most)
+		return pass_change(w, i, both, v);
+	if (!near_leaves_less(w, bend2, v))
+		return INFINITY;
+	return near_goes_on(w, i, bend2, v) ?
+	       near_way_on(w, i, a, b) : pass_change(w, i, both, NEAR_MORE * v);
+}
+
+/* As pass_arch(), of long lines. */
+COLUMNS_INLINE double near_arch(struct pass *w, uint32_t last, uint32_t i,
+				const struct heading *a,
+				const struct heading *b, double v,
+				uint32_t both, uint32_t n)
+{
+	const struct interp_seg *s = w->segs;
+	const double mm = (s[last].length_mm + s[i].length_mm) / 2;
+	double turn = 0;
+
+	if (last + 1 != i || s[last].kind != INTERP_LINE ||
+	    s[i].kind != INTERP_LINE)
+		return INFINITY;
+	for (uint32_t j = 0; j < n; j++) {
+		const double d = b->rate[j] - a->rate[j];
+
+		turn += both >> j & 1 ? d * d : 0;
+	}
+	turn /= mm * mm;
+	if (!near_leaves_less(w, turn, v))
+		return INFINITY;
+	return near_goes_on(w, i, turn, v) ?
+	       near_way_on(w, i, a, b) : pass_arch(w, i, both, NEAR_MORE * v);
 }
 
 /* As pass_node_mm_s(). */
@@ -319,9 +388,6 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		v = all ? near_curve(w, last, i, a, b, most, n) : 0;
 	if (curves && v < most)
 		v = pass_curve(w, i, both, most);
-	if (!curves && last + 1 == i && s[last].kind == INTERP_LINE &&
-	    s[i].kind == INTERP_LINE)
-		v = pass_arch(w, i, both, most);
 	if (curves) {
 		const double change = near_change(w, last, i, a, b,
 						  smaller(v, most), both, n);
@@ -332,12 +398,16 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 						      (float)change);
 	}
 	fast = curves ? smaller(v, most) : v;
-	if (all ? near_turns_faster(w, last, i, a, b, fast, near_all(n), n) :
-		  near_turns_faster(w, last, i, a, b, fast, both, n))
-		return v;
-	turn = pass_turn(w, last, i, a, b);
-	w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s, (float)turn);
-	return smaller(v, turn);
+	if (!(all ? near_turns_faster(w, last, i, a, b, fast, near_all(n), n) :
+		    near_turns_faster(w, last, i, a, b, fast, both, n))) {
+		turn = pass_turn(w, last, i, a, b);
+		w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s, (float)turn);
+		v = smaller(v, turn);
+	}
+	if (!curves)
+		v = smaller(v, near_arch(w, last, i, a, b, smaller(v, most),
+					 both, n));
+	return v;
 }
 
 #endif /* SPEED_NEARBY_H */

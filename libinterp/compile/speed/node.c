@@ -364,59 +364,6 @@ double pass_corner(struct pass *w, const struct chord *a,
 	return around(w, &c, a->h.along, w->n);
 }
 
-/* How much column rates change from segment @i to the next one; by nothing if
- * they are no lines of this run. */
-static void turn_behind(const struct pass *w, uint32_t i,
-			double ret[INTERP_NAXES])
-{
-	struct heading h[2];
-	int64_t sub[INTERP_NAXES];
-
-	memset(ret, 0, w->n * sizeof(*ret));
-	if (i < w->run || i + 1 >= w->run_end ||
-	    w->segs[i].kind != INTERP_LINE ||
-	    w->segs[i + 1].kind != INTERP_LINE)
-		return;
-	for (uint32_t k = 0; k < 2; k++)
-		heading_straight(&w->ways, i + k, &h[k], sub, w->n);
-	for (uint32_t j = 0; j < w->n; j++)
-		ret[j] = h[1].rate[j] - h[0].rate[j];
-}
-
-/* What nodes turn by one behind the other adds up over the lines between. */
-double pass_arch(const struct pass *w, uint32_t i, uint32_t along,
-		 double most_mm_s)
-{
-	double here[INTERP_NAXES], before[INTERP_NAXES], behind[INTERP_NAXES];
-	const double mm = (w->segs[i - 1].length_mm +
-			   w->segs[i].length_mm) / 2;
-	double v = most_mm_s;
-	bool turns = false;
-
-	/* A share of X Y Z changes by 2 at most. */
-	if (!(along & ~w->ways.xyz) && 2 * v * v <= w->a_linear_mm_s2 * mm)
-		return INFINITY;
-	turn_behind(w, i - 1, here);
-	for (uint32_t j = 0; j < w->n; j++)
-		turns = turns || (along >> j & 1 &&
-				  v * v * fabs(here[j]) > w->a_mm_s2[j] * mm);
-	if (!turns)
-		return INFINITY;
-	turn_behind(w, i - 2, before);
-	turn_behind(w, i, behind);
-	for (uint32_t j = 0; j < w->n; j++) {
-		const double most = larger(before[j] * here[j],
-					   behind[j] * here[j]);
-		const double by = smaller(fabs(here[j]),
-					  most / fabs(here[j]));
-
-		if (along >> j & 1 && most > 0 &&
-		    v * v * by > w->a_mm_s2[j] * mm)
-			v = sqrt(w->a_mm_s2[j] * mm / by);
-	}
-	return v < most_mm_s ? v : INFINITY;
-}
-
 /*
  * What columns that make the length step by, if the nodes before and behind
  * turn the same way: then an arc between both lines and the node is as near to
@@ -429,9 +376,9 @@ static void apart(const struct pass *w, uint32_t i, double d[INTERP_NAXES])
 				  w->segs[i].length_mm);
 	double before[INTERP_NAXES], here[INTERP_NAXES], behind[INTERP_NAXES];
 
-	turn_behind(w, i - 2, before);
-	turn_behind(w, i - 1, here);
-	turn_behind(w, i, behind);
+	pass_turn_behind(w, i - 2, before);
+	pass_turn_behind(w, i - 1, here);
+	pass_turn_behind(w, i, behind);
 	for (uint32_t j = 0; j < w->n; j++) {
 		const double around = (before[j] + behind[j]) / 2;
 		const double left = 1 - fabs(around) * mm /

@@ -8,6 +8,7 @@
 #ifndef SPEED_PASS_H
 #define SPEED_PASS_H
 
+#include "interp/bends.h"
 #include "interp/limits.h"
 #include "interp/smaller.h"
 #include "speed/heading.h"
@@ -116,6 +117,26 @@ struct bent_nodes {
 	bool lost;			/* there was no memory for one */
 };
 
+/* The acceleration and jerk that bends leave for motion along the path. */
+struct leave {
+	double a_mm_s2, j_mm_s3;
+};
+
+/* Where the path itself bends, a column that does: at the nodes between the
+ * segments @before and @behind. */
+struct bent_way {
+	uint32_t before, behind;
+	uint32_t column;
+	float bend, change, rate;	/* as struct bent */
+};
+
+struct bent_ways {
+	struct bent_way *at;
+	size_t n, room;
+	uint32_t last;			/* columns of the last place */
+	bool lost;			/* there was no memory for one */
+};
+
 /*
  * What limits a node: in how the bend of an axis beside the path changes, a
  * rounding shows most (dip.c).
@@ -142,16 +163,43 @@ struct changing {
 					 * two from there; 0 mm: none */
 	uint32_t first;
 	double most_mm_s;		/* no more was asked for */
-	double v_mm_s;
+	double v_mm_s;			/* by that, and by the next */
+	double arc_mm_s;		/* by the bend itself */
 	double per_mm[INTERP_NAXES];	/* of a bend, in a mm; at most */
 	bool clear;			/* wider windows show no more */
+	/* A bend that goes on before the node and behind it: */
+	struct bent bent[INTERP_NAXES];
+	double bend_most;		/* of all columns; a rounding hides no
+					 * more */
 };
+
+/* The bend of the path that was noted last.  It is the same as far as @to_mm
+ * along the path, unless a node shows more of it. */
+struct way_on {
+	double to_mm;			/* -INFINITY: there is none */
+	double same_mm;			/* so far it is noted as it is */
+	double bend;			/* in a mm */
+	double bend2[2];		/* squared, a line shows so much of it:
+					 * the least and the most */
+	double most_mm_s;		/* what was asked for */
+	double v_mm_s;			/* no faster than this */
+};
+
+/* Where it goes on bending, the path may turn by so much until it is noted in
+ * its new direction, and until that is looked at again. */
+#define PASS_SAME_WAY	0.2
+#define PASS_SAME_BEND	2.0
+
+/* Of its acceleration, what a bend of the path may take and is not looked
+ * for. */
+#define PASS_HARDLY	0.1
 
 /* When that has to be asked, and what is known until then. */
 struct change_gate {
 	uint32_t next;			/* the first node that is not known */
 	double most_mm_s, v_mm_s;
-	double jerk_mm_s3;		/* of the weakest axis */
+	double a_mm_s2, jerk_mm_s3;	/* of the weakest axis */
+	struct way_on way;
 	double bend[2][INTERP_NAXES];	/* between long lines, from node @first
 					 * up to @node, of the last two */
 	uint32_t first, node;
@@ -209,7 +257,8 @@ struct pass {
 	uint32_t bends;			/* the columns that have this at the
 					 * node: */
 	struct bent bent[INTERP_NAXES];
-	struct bent_nodes bent_nodes;
+	struct bent_nodes bent_nodes;	/* beside the path */
+	struct bent_ways bent_ways;	/* of the path itself */
 	struct dip dip, dips[DIP_RING];	/* at the node, and of the last ones */
 	uint32_t tol_of;		/* columns whose tol was asked for
 					 * last */
@@ -339,19 +388,14 @@ void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
 void pass_beside(struct pass *w, struct look *l, uint32_t j, double d,
 		 double less);
 
-/* The acceleration and jerk that bends beside the path leave for motion along
- * it. */
-struct leave {
-	double a_mm_s2, j_mm_s3;
-};
-
 /** pass_leave() - what a bend leaves, if its node is passed at @v_mm_s at
  *  most. */
 void pass_leave(const struct pass *w, const struct bent_node *b, double v_mm_s,
 		struct leave *ret);
 
-/** pass_soften_seg() - segment @i has no more than that. */
-void pass_soften_seg(struct pass *w, uint32_t i, const struct leave *left);
+/** pass_soften_segs() - segments @from to @to have no more than that. */
+void pass_soften_segs(struct pass *w, uint32_t from, uint32_t to,
+		      const struct leave *left);
 
 /** pass_note_bends() - soften the segments @before and @behind a node by its
  *  bends, when pass_soften() is called. */
@@ -359,6 +403,64 @@ void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind);
 
 /** pass_bent_node() - the same by one of them. */
 void pass_bent_node(struct pass *w, const struct bent_node *b);
+
+/**
+ * pass_note_way() - between the segments @before and @behind the path bends so,
+ * and is no faster than @v_mm_s: soften them when pass_soften() is called.
+ *
+ * @is: of each column; bend 0: it does not bend
+ */
+void pass_note_way(struct pass *w, uint32_t before, uint32_t behind,
+		   const struct bent *is, double v_mm_s);
+
+/** pass_way_begin() - from node @i on the path bends by @bend, as is noted; of
+ *  which a rounding may hide @off. */
+static inline void pass_way_begin(struct pass *w, uint32_t i, double bend,
+				  double off, double most_mm_s)
+{
+	const double at = w->segs[i].s_mm, most = bend + off;
+	const double least = larger(bend / 2 - off, 0);
+
+	w->gate.way = (struct way_on) {
+		at + PASS_SAME_BEND / bend, at + PASS_SAME_WAY / bend, bend,
+		{ least * least, most * most }, most_mm_s, w->gate.v_mm_s
+	};
+}
+
+/** pass_way_on() - note at node @i that the bend is as before, between lines in
+ *  these directions. */
+void pass_way_on(struct pass *w, uint32_t i, const struct heading *a,
+		 const struct heading *b);
+
+/** pass_way_to() - what was noted last is so up to segment @behind. */
+static inline void pass_way_to(struct pass *w, uint32_t behind)
+{
+	struct bent_ways *k = &w->bent_ways;
+
+	for (uint32_t n = 1; n <= k->last; n++)
+		k->at[k->n - n].behind = behind;
+}
+
+/** pass_way_end() - what was noted last says nothing of what is behind segment
+ *  @behind. */
+static inline void pass_way_end(struct pass *w, uint32_t behind)
+{
+	const struct bent_ways *k = &w->bent_ways;
+
+	if (k->last > 0 && k->at[k->n - 1].behind > behind &&
+	    k->at[k->n - 1].before < behind)
+		pass_way_to(w, behind);
+}
+
+/** pass_way_node() - a column of it, as if at one node. */
+static inline struct bent_node pass_way_node(const struct bent_way *k)
+{
+	return (struct bent_node) {
+		.is = { .bend = (double)k->bend, .change = (double)k->change,
+			.rate = (double)k->rate },
+		.column = k->column, .before = k->before, .behind = k->behind,
+	};
+}
 
 /** pass_forget() - free what pass_soften() has not freed. */
 void pass_forget(struct pass *w);
@@ -387,9 +489,6 @@ void pass_dip_firm(struct pass *w, uint32_t first, uint32_t i, double v_mm_s);
 /** pass_dip_mm_s() - the greatest speed over node @i if what only a rounding
  *  can be does not count; 0: nothing is known of it. */
 double pass_dip_mm_s(const struct pass *w, uint32_t i);
-
-/** pass_level() - a speed, down to its level; that of an axis stays. */
-float pass_level(const struct pass *w, double v_mm_s);
 
 static inline double pass_from_to(const struct pass *w, uint32_t a, uint32_t b)
 {
@@ -466,10 +565,30 @@ void pass_change_anew(struct pass *w, uint32_t i);
 double pass_curl(const struct pass *w, uint32_t last, uint32_t i,
 		 const struct heading *a, const struct heading *b);
 
+/** pass_turn_behind() - how much column rates change from segment @i to the
+ *  next one; by nothing if they are no lines of this run. */
+void pass_turn_behind(const struct pass *w, uint32_t i,
+		      double ret[INTERP_NAXES]);
+
 /** pass_arch() - the greatest speed over the node in front of segment @i, if it
- *  is one of several between long lines that turn the same way. */
-double pass_arch(const struct pass *w, uint32_t i, uint32_t along,
-		 double most_mm_s);
+ *  is one of several between long lines that turn the same way; note its
+ *  bend. */
+double pass_arch(struct pass *w, uint32_t i, uint32_t along, double most_mm_s);
+
+/* The weakest of some columns. */
+struct weakest {
+	double a_mm_s2, j_mm_s3;
+};
+
+struct weakest pass_weakest(const struct pass *w, uint32_t columns);
+
+/** pass_arc_mm_s() - the greatest speed where the path goes on bending, by as
+ *  much in a mm.  The speed of an arc. */
+static inline double pass_arc_mm_s(const struct weakest *k, double bend)
+{
+	return pass_round_mm_s(1 / bend, INTERP_BEND_ACROSS * k->a_mm_s2,
+			       INTERP_ARC_JERK_ROUND * k->j_mm_s3);
+}
 
 /** pass_turn() - the greatest speed over the same node by its own turn. */
 double pass_turn(struct pass *w, uint32_t last, uint32_t i,

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * reach.c - what bends beside the path leave, at the speeds that a move can
- * come to
+ * reach.c - what bends leave, at the speeds that a move can come to
  *
  * A bend takes the more of what an axis can do the faster it is passed.  Its
  * node may allow a speed that no move comes to: from the slow places behind it
@@ -21,27 +20,23 @@ static bool moves(const struct interp_seg *s)
 }
 
 /* The most over the node behind segment @k. */
-static double over_mm_s(const struct pass *w, uint32_t k)
+static float over_mm_s(const struct pass *w, uint32_t k)
 {
 	const struct interp_seg *s = &w->segs[k];
-	double v = (double)s->node_mm_s;
+	float v = s->node_mm_s;
 
 	if (moves(s))
-		v = smaller(v, (double)s->feed_max_mm_s);
+		v = pass_least(v, s->feed_max_mm_s);
 	if (k < w->end && moves(s + 1))
-		v = smaller(v, (double)s[1].feed_max_mm_s);
+		v = pass_least(v, s[1].feed_max_mm_s);
 	return v;
 }
 
-/* The square of a speed, after segment @k from another one. */
-static float from(const struct pass *w, uint32_t k, float v2, float other)
+/* The square of a speed, after segment @s from another one. */
+static inline float from(const struct interp_seg *s, float v2, float other)
 {
-	const struct interp_seg *s = &w->segs[k];
-
-	if (!moves(s))
-		return pass_least(v2, other);
-	return pass_least(v2, other + (float)(2 * s->length_mm *
-					      (double)s->a_mm_s2));
+	return pass_least(v2, moves(s) ? other + 2 * (float)s->length_mm *
+						 s->a_mm_s2 : other);
 }
 
 /* Of every node the square of the speed that can be come to, from where the
@@ -49,20 +44,21 @@ static float from(const struct pass *w, uint32_t k, float v2, float other)
  * their axes can do.  NULL: no memory. */
 static float *reach(const struct pass *w)
 {
+	const struct interp_seg *segs = w->segs;
 	float *v2 = malloc((w->end + 1) * sizeof(*v2));
+	float v = 0;
 
 	if (!v2)
 		return NULL;
-	for (uint32_t k = 0; k <= w->end; k++) {
-		const bool stands = k == 0 || k + 1 >= w->end;
-		const double v = stands ? 0 : over_mm_s(w, k);
+	v2[0] = v2[w->end] = 0;
+	for (uint32_t k = 1; k < w->end; k++) {
+		const float most = over_mm_s(w, k);
 
-		v2[k] = (float)(v * v);
-		if (k > 0)
-			v2[k] = from(w, k, v2[k], v2[k - 1]);
+		v2[k] = v = from(&segs[k], most * most, v);
 	}
-	for (uint32_t k = w->end; k-- > 0; )
-		v2[k] = from(w, k + 1, v2[k], v2[k + 1]);
+	v = 0;
+	for (uint32_t k = w->end; k > 0; k--)
+		v2[k - 1] = v = from(&segs[k], v2[k - 1], v);
 	return v2;
 }
 
@@ -71,8 +67,43 @@ static void soften_by(struct pass *w, const struct bent_node *b, double v_mm_s)
 	struct leave left;
 
 	pass_leave(w, b, v_mm_s, &left);
-	pass_soften_seg(w, b->before, &left);
-	pass_soften_seg(w, b->behind, &left);
+	pass_soften_segs(w, b->before, b->behind, &left);
+}
+
+/* By columns that bend at the same place of the path.  @left: what the last one
+ * leaves.  Return: how many there are from @k on. */
+static size_t leave_of_way(struct pass *w, const struct bent_way *k, size_t n,
+			   const float *v2, struct leave *ret)
+{
+	float most = 0;
+	size_t m;
+
+	for (uint32_t i = k->before; i < k->behind; i++)
+		most = v2[i] > most ? v2[i] : most;
+	*ret = (struct leave) { INFINITY, INFINITY };
+	for (m = 0; m < n && k[m].before == k->before; m++) {
+		const struct bent_node b = pass_way_node(&k[m]);
+		struct leave left;
+
+		pass_leave(w, &b, sqrt((double)most), &left);
+		ret->a_mm_s2 = smaller(ret->a_mm_s2, left.a_mm_s2);
+		ret->j_mm_s3 = smaller(ret->j_mm_s3, left.j_mm_s3);
+	}
+	return m;
+}
+
+/* By the bends of the path, at the speeds that can be come to. */
+static void soften_ways(struct pass *w, const float *v2)
+{
+	const struct bent_ways *k = &w->bent_ways;
+
+	for (size_t n = 0; n < k->n;) {
+		const struct bent_way *at = &k->at[n];
+		struct leave left;
+
+		n += leave_of_way(w, at, k->n - n, v2, &left);
+		pass_soften_segs(w, at->before, at->behind, &left);
+	}
 }
 
 static bool make_room(struct bent_nodes *k)
@@ -98,27 +129,29 @@ void pass_bent_node(struct pass *w, const struct bent_node *b)
 		return;
 	}
 	w->bent_nodes.lost = true;
-	soften_by(w, b, over_mm_s(w, b->before));
+	soften_by(w, b, (double)over_mm_s(w, b->before));
 }
 
 void pass_forget(struct pass *w)
 {
+	free(w->bent_ways.at);
+	w->bent_ways = (struct bent_ways) { .n = 0 };
 	free(w->bent_nodes.at);
 	w->bent_nodes = (struct bent_nodes) { .n = 0 };
 }
 
 /* The slowest node near to a bent one, on one side. */
-static double slowest_mm_s(const struct pass *w, const struct bent_node *b,
+static float slowest_mm_s(const struct pass *w, const struct bent_node *b,
 			   int way)
 {
-	double least = over_mm_s(w, b->before);
+	float least = over_mm_s(w, b->before);
 
 	for (int i = 1; i <= DIP_NODES; i++) {
 		const int64_t node = (int64_t)b->behind + way * i;
 
 		if (!pass_is_near(w, b, node))
 			break;
-		least = smaller(least, over_mm_s(w, (uint32_t)node - 1));
+		least = pass_least(least, over_mm_s(w, (uint32_t)node - 1));
 	}
 	return least;
 }
@@ -130,9 +163,8 @@ static void cut_peaks(struct pass *w)
 	struct bent_nodes *k = &w->bent_nodes;
 
 	for (size_t n = 0; n < k->n; n++)
-		k->at[n].peak_mm_s = (float)larger(
-			slowest_mm_s(w, &k->at[n], -1),
-			slowest_mm_s(w, &k->at[n], 1));
+		k->at[n].peak_mm_s = fmaxf(slowest_mm_s(w, &k->at[n], -1),
+					   slowest_mm_s(w, &k->at[n], 1));
 	/* Of a node with actions, all that it is made of. */
 	for (size_t n = 0; n < k->n; n++)
 		for (uint32_t i = k->at[n].before; i < k->at[n].behind; i++)
@@ -146,14 +178,16 @@ void pass_soften(struct pass *w)
 	float *v2;
 
 	cut_peaks(w);
-	v2 = k->n > 0 ? reach(w) : NULL;
+	v2 = k->n + w->bent_ways.n > 0 ? reach(w) : NULL;
 
 	for (size_t n = 0; n < k->n; n++) {
 		const uint32_t at = k->at[n].before;
 
 		soften_by(w, &k->at[n], v2 ? sqrt((double)v2[at]) :
-					     over_mm_s(w, at));
+					     (double)over_mm_s(w, at));
 	}
+	if (v2)
+		soften_ways(w, v2);
 	free(v2);
 	pass_forget(w);
 }

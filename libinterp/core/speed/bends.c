@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* bends.c - what bends beside the path leave at a speed */
+/* bends.c - what bends leave at a speed */
 #include "interp/bends.h"
 #include "interp/limits.h"
 #include "interp/smaller.h"

@@ -2,10 +2,10 @@
 /*
  * bends.h - how much acceleration a slow move may have where axes bend
  *
- * What an axis beside the path may do is shared between its bend and speeding
- * up (compile/speed/beside.c).  a_mm_s2 and j_mm_s3 of a segment are what is
- * left at the highest speed that can be come to there.  A move that is slower
- * may have more:
+ * What an axis may do is shared between its bend, beside the path or with it,
+ * and speeding up (compile/speed/beside.c, along.c).  a_mm_s2 and j_mm_s3 of a
+ * segment are what is left at the highest speed that can be come to there.  A
+ * move that is slower may have more:
  *
  *	a <= bent_a * (1 - by_v2 * v^2)
  *	by_va * v * a <= INTERP_ARC_JERK_BOTH

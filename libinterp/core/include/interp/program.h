@@ -52,7 +52,7 @@
 #define INTERP_FAR_BESIDE	1e4
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	12
+#define INTERP_PROGRAM_VERSION	13
 
 /*
  * How three and more axes make a line when they move one at a time.
@@ -157,7 +157,9 @@ struct interp_seg {
 	/* Written by compile/speed when the program is whole: limits.h */
 	float node_mm_s;		/* the fastest over its last node */
 	uint16_t slower_ahead;		/* how many segments ahead is the next
-					 * one that is entered slower */
+					 * one that is entered slower, or an
+					 * action, or where cutting begins or
+					 * ends */
 	uint16_t slower_behind;		/* the same, going back; 0: none */
 	uint16_t slower_feed;		/* how many segments ahead is one with a
 					 * smaller F; 0: none */
@@ -241,10 +243,10 @@ struct interp_piece {
 #define INTERP_BENDS_SEGS	16
 
 /*
- * What axes beside the path, which bend, leave for going along a run of
- * segments: the slower it goes, the more (interp/bends.h).  bends[k] is that of
- * the segments from INTERP_BENDS_SEGS * k on.  Without bends there are none, or
- * all is 0.
+ * What axes that bend, beside the path or with it, leave for going along a run
+ * of segments: the slower it goes, the more (interp/bends.h).  bends[k] is that
+ * of the segments from INTERP_BENDS_SEGS * k on.  Without bends there are none,
+ * or all is 0.
  */
 struct interp_bends {
 	float a_mm_s2, j_mm_s3;		/* along the path, as if nothing bent */
