@@ -363,19 +363,25 @@ static inline double length_of(const double d[INTERP_NAXES], uint32_t moved,
 	return sqrt(build_counts(uv2, abc2) ? uv2 : abc2);
 }
 
+/* Two numbers, and what a comparison says of each: all bits, or none. */
+typedef double two __attribute__((vector_size(16)));
+typedef int64_t two_bits __attribute__((vector_size(16)));
+
 /* A bit for each axis whose places differ. */
 static inline uint32_t other_axes(const double a_mm[INTERP_NAXES],
 				  const double b_mm[INTERP_NAXES])
 {
-	uint32_t axes = 0;
+	two_bits axes = { 0 };
 
-	/* Most stand, and equal numbers mostly have equal bits. */
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		if (memcmp(&a_mm[i], &b_mm[i], sizeof(*a_mm)) != 0 &&
-		    a_mm[i] != b_mm[i])
-			axes |= 1u << i;
+	for (int i = 0; i < INTERP_NAXES; i += 2) {
+		const two_bits bit = { 1 << i, 2 << i };
+		two a, b;
+
+		memcpy(&a, a_mm + i, sizeof(a));
+		memcpy(&b, b_mm + i, sizeof(b));
+		axes |= (a != b) & bit;
 	}
-	return axes;
+	return (uint32_t)(axes[0] | axes[1]);
 }
 
 double interp_build_fed_mm(const struct interp_build *b,
