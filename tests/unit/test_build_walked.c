@@ -95,6 +95,21 @@ static void one_arc_is_counted_before_it_is_walked(void **state)
 	assert_non_null(strstr(diag.found, "more than 20000 lattice"));
 }
 
+/* Its bursts are as few as a plan, so it is not counted; but the plan has to be
+ * made to know that. */
+static void a_line_is_counted_before_it_is_planned(void **state)
+{
+	const struct text even = {
+		INTERP_MIN_SWITCH, "G1 X10 Y10\nX-10 Y-10", false
+	};
+	struct interp_diag diag = { 0 };
+
+	(void)state;
+	assert_int_equal(compile(&even, WALKED + 1000, &diag, 300), 0);
+	assert_int_equal(compile(&even, WALKED - 1000, &diag, 1), -EINVAL);
+	assert_non_null(strstr(diag.found, "more than 19000 lattice"));
+}
+
 /* Two circles of 5 * 10^8 pulses each: the sum has too many for a segment, and
  * no place for its bits is taken. */
 static void so_are_two_contours(void **state)
@@ -131,6 +146,7 @@ int main(void)
 		cmocka_unit_test(what_is_walked_is_counted_over_the_text),
 		cmocka_unit_test(so_is_the_end_of_the_travel),
 		cmocka_unit_test(one_arc_is_counted_before_it_is_walked),
+		cmocka_unit_test(a_line_is_counted_before_it_is_planned),
 		cmocka_unit_test(so_are_two_contours),
 	};
 

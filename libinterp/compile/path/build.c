@@ -563,8 +563,7 @@ static int walk_one_by_one(struct interp_build *b, const int64_t *to,
 	ret->ticks = (uint32_t)ticks;
 	if (build_columns(b, m.moved) < 0)
 		return -ENOMEM;
-	err = build_bits_add(b, &way, &ret->arg);
-	return err == 0 && ret->arg ? build_walk(b, ret->ticks, diag) : err;
+	return build_bits_add(b, &way, ret->ticks, &ret->arg, diag);
 }
 
 static inline int walk_together(struct interp_build *b,
