@@ -519,13 +519,14 @@ static int sensed_begin(struct interp_build *b, uint32_t moved,
 	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
 }
 
-int build_walk_may(const struct interp_build *b, double points,
+int build_walk_may(struct interp_build *b, double points,
 		   struct interp_diag *diag)
 {
 	const double most = b->o.walked_max;
 
 	if (points <= most - (double)b->walked)
 		return 0;
+	b->again.refused = b->again.counts;
 	return interp_diag_say(diag, "curves and arcs that are more than %.0f "
 			       "lattice points together; fewer, or shorter "
 			       "ones, or arcs by strategy simultaneous", most);
@@ -536,9 +537,10 @@ int build_walk(struct interp_build *b, double points,
 {
 	const int err = build_walk_may(b, points, diag);
 
-	if (err == 0)
-		b->walked += (uint64_t)points;
-	return err;
+	if (err < 0)
+		return err;
+	b->walked += (uint64_t)points;
+	return build_count_rest(b);
 }
 
 /* How a line is walked. */
