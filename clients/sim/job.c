@@ -79,6 +79,7 @@ static void say_one(void *arg, const struct interp_diag *d)
 
 /* Enough to see whether a dialect accepts a text. */
 #define TRIED_SEGS_MAX	1000000u
+#define TRIED_WALKED_MAX	10000000u
 
 static bool is_taken(const struct interp_text *text, const char *name,
 		     struct config_compiling of)
@@ -96,6 +97,7 @@ static bool is_taken(const struct interp_text *text, const char *name,
 	of.text.nc.refused = NULL;
 	of.text.nc.segs_max = TRIED_SEGS_MAX;
 	of.text.nc.executed_max = TRIED_SEGS_MAX;
+	of.build.walked_max = TRIED_WALKED_MAX;
 	b = interp_build_create(&of.build);
 	err = b ? interp_compile(&tried, &of.text, b, &lines, &diag) : -ENOMEM;
 	interp_build_destroy(b);

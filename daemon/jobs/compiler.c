@@ -323,11 +323,22 @@ void compiler_forget(struct compiler_result *r)
 	r->block = -1;
 }
 
+/* The loop answers clients, also while the compiler has every processor.  So a
+ * real-time priority of this service is the loop's alone, and without one the
+ * compiler does not displace it when both may run.  Threads that the compiler
+ * starts are as it is.  To step back is always allowed. */
+static void step_back(void)
+{
+	pthread_setschedparam(pthread_self(), SCHED_BATCH,
+			      &(struct sched_param) { .sched_priority = 0 });
+}
+
 static void *compiler_main(void *arg)
 {
 	struct compiler *c = arg;
 	uint64_t one = 1;
 
+	step_back();
 	compiler_work(c);
 	atomic_store(&c->over, true);
 	/* Writing 1 to an eventfd whose count is 0 cannot fail. */

@@ -3,7 +3,7 @@
  * compiler.h - NC code to a program, in a thread of its own
  *
  * A text of millions of lines takes seconds. Commands and status go on
- * meanwhile.
+ * meanwhile: the thread, and those that it starts, have SCHED_BATCH.
  *
  * Threads: that of the event loop, which also gets the result.
  */

@@ -439,13 +439,18 @@ static void go_to(struct jobs *j, const struct shm_snapshot *s)
 	}
 }
 
-void electrode_follow(struct jobs *j)
+void electrode_take(struct jobs *j)
 {
 	const uint32_t n = j->queue.job.n;
 
 	if (j->electrode.n != n && take(j, n) == 0)
 		find_rows(j);
-	if (j->electrode.n == n)
+}
+
+void electrode_follow(struct jobs *j)
+{
+	electrode_take(j);
+	if (j->electrode.n == j->queue.job.n)
 		go_to(j, &j->queue.snap);
 }
 

@@ -74,6 +74,10 @@ void electrode_wait(struct jobs *j, uint32_t n, const char *why);
 /** electrode_waits() - does the next job wait for a change of the table? */
 bool electrode_waits(struct jobs *j);
 
+/** electrode_take() - divide the program of the loaded job into its parts, if
+ *  that was not done.  Of a long one it takes some 20 ms. */
+void electrode_take(struct jobs *j);
+
 /** electrode_follow() - follow the loaded job; to be called every 20 ms. */
 void electrode_follow(struct jobs *j);
 

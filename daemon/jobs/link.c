@@ -12,7 +12,8 @@
 
 #define STALE_US	500000		/* if the cycle counter stands so long,
 					 * edmd is lost */
-#define LOOK_US		100000		/* between two checks of the process */
+#define LOOK_US		100000		/* between two checks of a process that
+					 * was there */
 #define TAKE_US		1500000		/* a command that comes later is not
 					 * taken */
 #define ANSWER_US	500000		/* after it took one: it answers within
@@ -97,14 +98,16 @@ static int link_open(struct link *l, int64_t now_us)
 	return 0;
 }
 
+/* Whoever waits for edmd waits for this, so it is tried each time.  What is
+ * wrong is said once. */
 static void link_try(struct link *l, int64_t now_us)
 {
-	int err;
+	const int err = link_open(l, now_us), was = l->wrong;
 
-	if (now_us - l->looked_us < LOOK_US)
-		return;
 	l->looked_us = now_us;
-	err = link_open(l, now_us);
+	l->wrong = err;
+	if (err == was)
+		return;
 	if (err == -EPROTO)
 		log_error("link: edmd's shared memory is of another layout; "
 			  "install edmd and edmd-jobs of one version");

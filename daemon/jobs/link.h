@@ -56,6 +56,7 @@ struct link {
 	struct shm_follow events;
 	uint64_t events_before;		/* written before it was opened */
 	int64_t moved_us, looked_us;
+	int wrong;			/* -errno of the last try to open it */
 	bool moved;			/* a new cycle was seen since opening */
 	uint64_t next_id;
 	struct link_pending pending[LINK_PENDING];

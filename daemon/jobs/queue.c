@@ -147,9 +147,14 @@ int queue_init(struct jobs *j)
 	queue_recount(j);
 	if (q->job.n && again_read(j, q->job.n, &a) == 0)
 		q->run = a.run;
-	if (q->job.n)
-		log_notice("queue: job %s was %s when last seen", q->job.id,
-			   store_state_name(q->job.state));
+	if (!q->job.n)
+		return 0;
+	log_notice("queue: job %s was %s when last seen", q->job.id,
+		   store_state_name(q->job.state));
+	/* Its whole program is read for these.  Nobody waits yet, and edmd may
+	 * be about to read it, too. */
+	eta_take(&j->eta, j->machine, q->job.n);
+	electrode_take(j);
 	return 0;
 }
 

@@ -330,7 +330,8 @@ static int copy_row(sqlite3_stmt *from, sqlite3_stmt *to)
 	return sqlite3_reset(to);
 }
 
-static int copy_table(sqlite3 *disk, sqlite3 *memory, const char *name)
+/* Row by row: what can be read of a disk that fails. */
+static int copy_rows(sqlite3 *disk, sqlite3 *memory, const char *name)
 {
 	sqlite3_stmt *from = NULL, *to = NULL;
 	char sql[400];
@@ -350,6 +351,31 @@ static int copy_table(sqlite3 *disk, sqlite3 *memory, const char *name)
 	sqlite3_finalize(from);
 	sqlite3_finalize(to);
 	return rc == SQLITE_DONE ? SQLITE_OK : rc;
+}
+
+/* SQLite moves rows of two tables that are alike as they are, which takes a
+ * fifth of the time. */
+static int copy_table(sqlite3 *disk, sqlite3 *memory, const char *name)
+{
+	char sql[200];
+	int rc;
+
+	snprintf(sql, sizeof(sql), "INSERT INTO main.\"%.60s\" "
+		 "SELECT * FROM disk.\"%.60s\"", name, name);
+	rc = sqlite3_exec(memory, sql, NULL, NULL, NULL);
+	return rc == SQLITE_OK ? rc : copy_rows(disk, memory, name);
+}
+
+/* A disk that cannot be read in the usual way is not attached; its tables are
+ * copied by rows. */
+static void attach(sqlite3 *memory, sqlite3 *disk)
+{
+	char *sql = sqlite3_mprintf("ATTACH 'file:%q?mode=ro' AS disk",
+				    sqlite3_db_filename(disk, "main"));
+
+	if (sql)
+		sqlite3_exec(memory, sql, NULL, NULL, NULL);
+	sqlite3_free(sql);
 }
 
 static int copy_tables(sqlite3 *disk, sqlite3 *memory)
@@ -376,12 +402,18 @@ sqlite3 *store_file_copy(struct store *s, sqlite3 *disk)
 	sqlite3 *memory = NULL;
 
 	/* If there is no memory for a row, there is none for the service. */
-	if (sqlite3_open(":memory:", &memory) != SQLITE_OK ||
+	if (sqlite3_open_v2(":memory:", &memory, SQLITE_OPEN_READWRITE |
+			    SQLITE_OPEN_URI, NULL) != SQLITE_OK ||
 	    step_up(memory, 0) < 0)
 		abort();
-	s->unread = !disk || copy_tables(disk, memory) != SQLITE_OK;
-	if (store_count_begin(memory) < 0)
+	if (disk)
+		attach(memory, disk);
+	if (execute(memory, "BEGIN") < 0)
 		abort();
+	s->unread = !disk || copy_tables(disk, memory) != SQLITE_OK;
+	if (execute(memory, "COMMIT") < 0 || store_count_begin(memory) < 0)
+		abort();
+	sqlite3_exec(memory, "DETACH disk", NULL, NULL, NULL);
 	if (s->unread)
 		log_error("store: %s cannot be read either; what is in it is "
 			  "not known until it can be", s->path);

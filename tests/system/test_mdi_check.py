@@ -4,6 +4,7 @@
 The technology table is a pipe that nobody writes, so a check lasts for as long
 as a test wants, on any machine."""
 
+import contextlib
 import os
 
 import pytest
@@ -78,6 +79,22 @@ def test_all_else_is_answered_meanwhile(shop):
     assert a.code == 0
     c.job_where(a.reason, "done")
     assert moved_mm(shop) == 1
+
+
+def test_the_compiler_has_no_real_time_and_the_loop_keeps_it(shop):
+    """Else it has all processors, and others wait for their answers."""
+    loop = shop.jobs.pid
+    with contextlib.suppress(PermissionError):
+        os.sched_setscheduler(loop, os.SCHED_FIFO, os.sched_param(10))
+    is_given = os.sched_getscheduler(loop)
+    pipe, seq = begin(shop)
+    assert shop.client.ask("queue").code == 0
+    threads = [os.sched_getscheduler(int(t))
+               for t in os.listdir(f"/proc/{loop}/task")]
+    assert os.sched_getscheduler(loop) == is_given
+    assert threads.count(os.SCHED_BATCH) == 1
+    pipe.give()
+    assert answer(shop, seq).code == 0
 
 
 def test_lines_that_nobody_waits_for_any_more_do_not_begin(shop):

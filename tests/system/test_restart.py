@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Either program is killed at any time: no job is lost, nothing moves."""
 
+import os
+import pathlib
 import subprocess
 import time
 
@@ -120,6 +122,27 @@ def test_edmd_comes_back_within_a_blink_and_nothing_moves(machine):
     c.job_where("job", "done")
 
 
+def test_both_are_killed_and_the_job_goes_on_as_it_was_compiled(machine):
+    c = begin(machine)
+    [program] = machine.shm("program")
+    was = os.stat(f"/dev/shm/{program}")
+    for which in ("edmd", "jobs"):
+        machine.kill(which)
+    machine.start_jobs()
+    machine.start_edmd()
+    held = c.status_where(
+        lambda s: s.daemon == "ok" and s.job_state == "held"
+    )
+    assert 0.4 <= held.place_mm < 4
+    # Another file would be another compile.
+    assert machine.shm("program") == [program]
+    still = os.stat(f"/dev/shm/{program}")
+    assert (still.st_ino, still.st_mtime_ns) == (was.st_ino, was.st_mtime_ns)
+    assert c.ask("start").code == 0
+    j = c.job_where("job", "done")
+    assert abs(j["path_mm"] - 4) < 1e-3
+
+
 def test_edmd_starts_anew_with_a_queue_and_the_queue_waits(machine):
     c = machine.client
     assert c.submit(QUICK_JOB, "first", hold=True).code == 0
@@ -170,6 +193,18 @@ def test_without_edmd_jobs_are_taken_and_wait(idle):
     assert c.job("early")["state"] == "ready"
     assert c.ask("start").code == 0
     c.job_where("early", "done")
+
+
+def test_an_edmd_of_another_layout_is_told_once(idle):
+    """It is looked for each 20 ms."""
+    status = pathlib.Path(f"/dev/shm/edmd.{idle.name}.status")
+    status.write_bytes(b"another")
+    idle.start_jobs()
+    for _ in range(5):
+        assert idle.client.status(5).daemon == "absent"
+    log = (idle.folder / "edmd-jobs.log").read_text()
+    assert log.count("of another layout") == 1
+    status.unlink()
 
 
 def test_edmd_jobs_takes_no_url_that_leaves_the_host_without_a_key(tmp_path):

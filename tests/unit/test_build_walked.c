@@ -7,6 +7,8 @@
  */
 #include "nc_read.h"
 
+#include "interp/compile.h"
+
 #define WALKED	20000u
 
 struct text {
@@ -32,25 +34,52 @@ static const struct text texts[] = {
 	{ INTERP_DDA, "G1 X0.3 Y0.1\nX-0.3 Y-0.1", false },
 };
 
-static int compile(const struct text *t, uint32_t walked_max,
-		   struct interp_diag *diag, uint32_t repeats)
+struct try {
+	const struct text *text;
+	uint32_t walked_max, repeats;
+	bool ahead;			/* the text may be read once more */
+	struct interp_diag diag;
+	size_t bytes;			/* of what was built */
+};
+
+static int compile_try(struct try *t)
 {
 	struct nc_read n = nc_ready();
 	const struct interp_build_options o = {
-		.machine = &n.machine, .strategy = t->strategy,
-		.tolerance_milli = 2000, .walked_max = walked_max,
+		.machine = &n.machine, .strategy = t->text->strategy,
+		.tolerance_milli = 2000, .walked_max = t->walked_max,
 	};
 	struct interp_build *b = interp_build_create(&o);
-	char text[256];
-	int err, len;
+	struct interp_compile_options co;
+	struct interp_text text;
+	char words[256];
+	uint32_t lines;
+	int err;
 
 	assert_non_null(b);
-	len = snprintf(text, sizeof(text), "G91 F100\nM98 P1 L%u\nM2\nO1\n%s\n"
-		       "M99\n", (unsigned int)repeats, t->motion);
+	text = (struct interp_text) {
+		words, (size_t)snprintf(words, sizeof(words), "G91 F100\n"
+					"M98 P1 L%u\nM2\nO1\n%s\nM99\n",
+					t->repeats, t->text->motion), NULL
+	};
 	n.o.machine = &n.machine;
-	err = interp_nc_compile(&(struct interp_text) {
-		.at = text, .bytes = (size_t)len }, &n.o, b, &n.result, diag);
+	co = (struct interp_compile_options) { .nc = n.o };
+	err = t->ahead ? interp_compile(&text, &co, b, &lines, &t->diag) :
+			 interp_nc_compile(&text, &n.o, b, &n.result,
+					   &t->diag);
+	t->bytes = interp_build_bytes(b);
 	interp_build_destroy(b);
+	return err;
+}
+
+static int compile(const struct text *t, uint32_t walked_max,
+		   struct interp_diag *diag, uint32_t repeats)
+{
+	struct try try = { .text = t, .walked_max = walked_max,
+			   .repeats = repeats };
+	const int err = compile_try(&try);
+
+	*diag = try.diag;
 	return err;
 }
 
@@ -70,6 +99,46 @@ static void what_is_walked_is_counted_over_the_text(void **state)
 		assert_non_null(strstr(diag.found, "more than 20000 lattice"));
 		assert_in_range(diag.line, 5, 6);
 	}
+}
+
+/* Most is refused when a part of what is allowed was walked; but of a line of
+ * min-switch it is not known whether it will be. */
+static void too_much_is_told_early(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		struct try few = { &texts[i], WALKED, 3, true, { 0 }, 0 };
+		struct try many = { &texts[i], WALKED, 300, true, { 0 }, 0 };
+
+		assert_int_equal(compile_try(&few), 0);
+		assert_int_equal(compile_try(&many),
+				 texts[i].refused ? -EINVAL : 0);
+		if (!texts[i].refused)
+			continue;
+		assert_non_null(strstr(many.diag.found, "more than 20000"));
+		assert_in_range(many.diag.line, 5, 6);
+		if (strncmp(texts[i].motion, "G1", 2) != 0)
+			assert_true(many.bytes <= few.bytes);
+	}
+}
+
+/* What is counted ahead is no more than what is walked. */
+static void nothing_else_is_refused_early(void **state)
+{
+	uint32_t taken = 0;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		for (uint32_t max = 1000; max < 60000; max += max / 40) {
+			struct try a = { &texts[i], max, 30, false, { 0 }, 0 };
+			struct try b = { &texts[i], max, 30, true, { 0 }, 0 };
+			const int err = compile_try(&a);
+
+			assert_int_equal(compile_try(&b), err);
+			taken += texts[i].refused && err == 0;
+		}
+	}
+	assert_in_range(taken, 100, 1000);
 }
 
 /* A circle that touches the travel is looked at closely, by any strategy. */
@@ -93,6 +162,21 @@ static void one_arc_is_counted_before_it_is_walked(void **state)
 	(void)state;
 	assert_int_equal(compile(&large, WALKED, &diag, 1), -EINVAL);
 	assert_non_null(strstr(diag.found, "more than 20000 lattice"));
+}
+
+/* Its bursts are as few as a plan, so it is not counted; but the plan has to be
+ * made to know that. */
+static void a_line_is_counted_before_it_is_planned(void **state)
+{
+	const struct text even = {
+		INTERP_MIN_SWITCH, "G1 X10 Y10\nX-10 Y-10", false
+	};
+	struct interp_diag diag = { 0 };
+
+	(void)state;
+	assert_int_equal(compile(&even, WALKED + 1000, &diag, 300), 0);
+	assert_int_equal(compile(&even, WALKED - 1000, &diag, 1), -EINVAL);
+	assert_non_null(strstr(diag.found, "more than 19000 lattice"));
 }
 
 /* Two circles of 5 * 10^8 pulses each: the sum has too many for a segment, and
@@ -129,8 +213,11 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_is_walked_is_counted_over_the_text),
+		cmocka_unit_test(too_much_is_told_early),
+		cmocka_unit_test(nothing_else_is_refused_early),
 		cmocka_unit_test(so_is_the_end_of_the_travel),
 		cmocka_unit_test(one_arc_is_counted_before_it_is_walked),
+		cmocka_unit_test(a_line_is_counted_before_it_is_planned),
 		cmocka_unit_test(so_are_two_contours),
 	};
 

@@ -315,6 +315,39 @@ static void the_counts_follow_the_jobs(void **state)
 	store_close(s);
 }
 
+static int statements;
+
+static int note_statement(unsigned int what, void *arg, void *p, void *x)
+{
+	(void)what, (void)arg, (void)p, (void)x;
+	statements++;
+	return 0;
+}
+
+static int note_statements(sqlite3 *db)
+{
+	return sqlite3_trace_v2(db, SQLITE_TRACE_STMT, note_statement, NULL);
+}
+
+/* Row by row, 10,000 jobs with their history would keep the loop for 0.8 s. */
+static void all_is_taken_into_memory_by_tables(void **state)
+{
+	struct store *s = open_with(1000);
+	struct store_size before, after;
+
+	(void)state;
+	store_measure(s, &before);
+	statements = 0;
+	sqlite3_auto_extension((void (*)(void))note_statements);
+	store_degrade(s, -ENOSPC);
+	sqlite3_reset_auto_extension();
+	assert_in_range(statements, 1, 500);
+	store_measure(s, &after);
+	assert_int_equal(after.jobs, before.jobs);
+	assert_int_equal(store_waiting(s), 1000);
+	store_close(s);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -323,6 +356,7 @@ int main(void)
 		T(a_move_passes_what_does_not_wait),
 		T(an_event_without_a_job_is_not_kept_for_ever),
 		T(the_counts_follow_the_jobs),
+		T(all_is_taken_into_memory_by_tables),
 	};
 
 	if (sodium_init() < 0)

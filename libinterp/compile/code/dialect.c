@@ -120,18 +120,52 @@ static int compile_records(const struct interp_text *text,
 	return err;
 }
 
+struct source {
+	const struct interp_text *text;
+	const struct interp_compile_options *o;
+};
+
+static int compile(const struct source *s, struct interp_build *b,
+		   uint32_t *ret_lines, struct interp_diag *diag)
+{
+	const bool records = s->text->dialect &&
+			     s->text->dialect->reads != DIALECT_NC;
+	const int err = records ?
+		compile_records(s->text, s->o, b, ret_lines, diag) :
+		compile_nc(s->text, &s->o->nc, b, ret_lines, diag);
+
+	return err == 0 ? interp_build_flush(b, diag) : err;
+}
+
+/* Who listens has heard it already. */
+static int compile_again(void *arg, struct interp_build *b,
+			 struct interp_diag *diag)
+{
+	const struct source *s = arg;
+	struct interp_compile_options o = *s->o;
+	uint32_t lines;
+
+	o.nc.notes = NULL;
+	o.nc.refused = NULL;
+	return compile(&(struct source) { s->text, &o }, b, &lines, diag);
+}
+
 int interp_compile(const struct interp_text *text,
 		   const struct interp_compile_options *o,
 		   struct interp_build *b, uint32_t *ret_lines,
 		   struct interp_diag *diag)
 {
-	const bool records = text->dialect &&
-			     text->dialect->reads != DIALECT_NC;
-	int err = records ? compile_records(text, o, b, ret_lines, diag) :
-			   compile_nc(text, &o->nc, b, ret_lines, diag);
+	struct source s = { text, o };
+	int err;
 
-	if (err == 0)
-		err = interp_build_flush(b, diag);
+	interp_build_again(b, compile_again, &s);
+	err = compile(&s, b, ret_lines, diag);
+	if (err == -E2BIG) {
+		err = interp_build_refused(b, diag);
+		if (o->nc.refused)
+			o->nc.refused->say(o->nc.refused->arg, diag);
+	}
+	interp_build_again(b, NULL, NULL);
 	/* An error of the whole line is at its first column, one of the whole
 	 * text at 1:1. */
 	if (err == -EINVAL && diag->line == 0)

@@ -363,19 +363,25 @@ static inline double length_of(const double d[INTERP_NAXES], uint32_t moved,
 	return sqrt(build_counts(uv2, abc2) ? uv2 : abc2);
 }
 
+/* Two numbers, and what a comparison says of each: all bits, or none. */
+typedef double two __attribute__((vector_size(16)));
+typedef int64_t two_bits __attribute__((vector_size(16)));
+
 /* A bit for each axis whose places differ. */
 static inline uint32_t other_axes(const double a_mm[INTERP_NAXES],
 				  const double b_mm[INTERP_NAXES])
 {
-	uint32_t axes = 0;
+	two_bits axes = { 0 };
 
-	/* Most stand, and equal numbers mostly have equal bits. */
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		if (memcmp(&a_mm[i], &b_mm[i], sizeof(*a_mm)) != 0 &&
-		    a_mm[i] != b_mm[i])
-			axes |= 1u << i;
+	for (int i = 0; i < INTERP_NAXES; i += 2) {
+		const two_bits bit = { 1 << i, 2 << i };
+		two a, b;
+
+		memcpy(&a, a_mm + i, sizeof(a));
+		memcpy(&b, b_mm + i, sizeof(b));
+		axes |= (a != b) & bit;
 	}
-	return axes;
+	return (uint32_t)(axes[0] | axes[1]);
 }
 
 double interp_build_fed_mm(const struct interp_build *b,
@@ -513,13 +519,14 @@ static int sensed_begin(struct interp_build *b, uint32_t moved,
 	return interp_build_action(b, INTERP_DWELL, 0, w, diag);
 }
 
-int build_walk_may(const struct interp_build *b, double points,
+int build_walk_may(struct interp_build *b, double points,
 		   struct interp_diag *diag)
 {
 	const double most = b->o.walked_max;
 
 	if (points <= most - (double)b->walked)
 		return 0;
+	b->again.refused = b->again.counts;
 	return interp_diag_say(diag, "curves and arcs that are more than %.0f "
 			       "lattice points together; fewer, or shorter "
 			       "ones, or arcs by strategy simultaneous", most);
@@ -530,9 +537,10 @@ int build_walk(struct interp_build *b, double points,
 {
 	const int err = build_walk_may(b, points, diag);
 
-	if (err == 0)
-		b->walked += (uint64_t)points;
-	return err;
+	if (err < 0)
+		return err;
+	b->walked += (uint64_t)points;
+	return build_count_rest(b);
 }
 
 /* How a line is walked. */
@@ -557,8 +565,7 @@ static int walk_one_by_one(struct interp_build *b, const int64_t *to,
 	ret->ticks = (uint32_t)ticks;
 	if (build_columns(b, m.moved) < 0)
 		return -ENOMEM;
-	err = build_bits_add(b, &way, &ret->arg);
-	return err == 0 && ret->arg ? build_walk(b, ret->ticks, diag) : err;
+	return build_bits_add(b, &way, ret->ticks, &ret->arg, diag);
 }
 
 static inline int walk_together(struct interp_build *b,

@@ -18,7 +18,10 @@ int interp_build_action(struct interp_build *b, enum interp_kind kind,
 
 	if (kind == INTERP_AUX && arg <= INTERP_AUX_POWER_NEGATIVE)
 		b->off = arg == INTERP_AUX_POWER_OFF;
-	return err ? err : build_seg_finish(b, &seg, w, diag);
+	/* Millions of them would take as much memory as the program. */
+	if (err || b->again.counts)
+		return err;
+	return build_seg_finish(b, &seg, w, diag);
 }
 
 int interp_build_timed(struct interp_build *b,

@@ -313,7 +313,7 @@ static int count_ticks(struct build_arc *p, struct interp_diag *diag)
 
 /* Each of them is walked to plan the arc.  One axis at a time, no way is
  * shorter than the arc; its ends may be two pulses nearer to each other. */
-static int check_pulses(const struct build_arc *p, double pulse,
+static int check_pulses(struct build_arc *p, double pulse,
 			struct interp_diag *diag)
 {
 	const double r_mm = smaller(p->arc.r_mm, p->arc.r_mm + p->arc.dr_mm);
@@ -321,6 +321,9 @@ static int check_pulses(const struct build_arc *p, double pulse,
 
 	if (least > INTERP_PULSES_MAX / 2.0)
 		return refuse_ticks(diag);
+	/* For who only counts; one of a few pulses may become a line. */
+	if (r_mm > 2 * pulse)
+		p->ticks = (uint32_t)larger(least * 0.99 - 4, 0);
 	return build_walk_may(p->walks, least * 0.99 - 2, diag);
 }
 
@@ -338,7 +341,7 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 				       interp_strategy_name(p->o->strategy));
 	}
 	err = check_pulses(p, pulse, diag);
-	if (err < 0)
+	if (err < 0 || p->walks->again.counts)
 		return err;
 	arc_ends(p, start, end);
 	/* There is nothing to go around, or the helix of a dda has no way

@@ -12,7 +12,7 @@
 struct build_arc {
 	/* In. */
 	const struct interp_build_options *o;
-	const struct interp_build *walks;	/* that counts what is walked */
+	struct interp_build *walks;	/* that counts what is walked */
 	const struct interp_build_arc *word;
 	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
 	const double *end_mm;	/* of all axes */

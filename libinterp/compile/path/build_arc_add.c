@@ -87,6 +87,10 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	if (plan.straight)
 		return interp_build_line(b, end_mm, w, diag);
 	err = walk(b, &plan, diag);
+	if (b->again.counts) {
+		build_stand_at(b, end_mm, to);
+		return err;
+	}
 	if (err == 0 && plan.near_edge)
 		err = build_edge_look(b, &(struct build_edge) {
 				      .arc = &plan, .word = w }, diag);

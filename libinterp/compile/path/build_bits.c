@@ -112,31 +112,42 @@ static uint64_t *words_add(struct table *t, size_t n)
 	return (uint64_t *)t->at + from;
 }
 
-int build_bits_add(struct interp_build *b, const struct build_way *w,
-		   uint32_t *ret_arg)
+static int plan_add(struct interp_build *b, const struct plan *p,
+		    uint32_t *ret_arg)
 {
-	const size_t at = b->bits.n;
-	struct plan p;
+	const size_t at = b->bits.n, words = words_of(p);
 	uint64_t *bits;
-	size_t words;
-	int r = 0;
+	int err = 0;
 
-	*ret_arg = 0;
-	if (!pulse_strategy(b->o.strategy)->runs ||
-	    !plan_pairs(&p, &b->o, w) || !worth_it(&p))
-		return 0;
-	words = words_of(&p);
 	if (at + words >= UINT32_MAX)
 		return 0;
 	bits = words_add(&b->bits, words);
 	if (!bits)
 		return -ENOMEM;
-	for (uint32_t i = 0; i < p.npairs && r == 0; i++) {
-		const struct greedy_line l = line_of(&p, i);
+	for (uint32_t i = 0; i < p->npairs && err == 0; i++) {
+		const struct greedy_line l = line_of(p, i);
 
-		r = bits_write(&l, bits);
-		bits += pair_words(&p.pair[i]);
+		err = bits_write(&l, bits);
+		bits += pair_words(&p->pair[i]);
 	}
 	*ret_arg = (uint32_t)at + 1;
-	return r;
+	return err;
+}
+
+int build_bits_add(struct interp_build *b, const struct build_way *w,
+		   uint32_t ticks, uint32_t *ret_arg, struct interp_diag *diag)
+{
+	struct plan p;
+	int err;
+
+	*ret_arg = 0;
+	if (!pulse_strategy(b->o.strategy)->runs || !plan_pairs(&p, &b->o, w))
+		return 0;
+	/* What is planned only to find that bursts are as good is not counted,
+	 * but it may not be longer than what is. */
+	err = build_walk_may(b, ticks, diag);
+	if (err < 0 || !worth_it(&p))
+		return err;
+	err = plan_add(b, &p, ret_arg);
+	return err == 0 && *ret_arg ? build_walk(b, ticks, diag) : err;
 }

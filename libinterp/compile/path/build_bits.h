@@ -17,13 +17,15 @@
 #define BUILD_BITS_ENOUGH	103
 
 /**
- * build_bits_add() - plan the line @w and put its bits into the table.
+ * build_bits_add() - plan the line @w of so many @ticks and put its bits into
+ * the table.
  *
  * @ret_arg: for interp_seg.arg; 0: the line uses bursts.
  *
- * Return: 0 or -ENOMEM.
+ * Return: 0; -ENOMEM; -EINVAL with @diag filled if more than may be walked
+ * would be planned; that is said before it is.
  */
 int build_bits_add(struct interp_build *b, const struct build_way *w,
-		   uint32_t *ret_arg);
+		   uint32_t ticks, uint32_t *ret_arg, struct interp_diag *diag);
 
 #endif /* PATH_BUILD_BITS_H */

@@ -331,6 +331,8 @@ int interp_build_curve(struct interp_build *b,
 
 	if (err == 0)
 		err = build_curve_check(&p);
+	if (err == 0 && b->again.counts)
+		return build_count_curve(b, c, diag);
 	if (err == 0)
 		err = build_curve_store(b, c, &p.curve, &p.moved);
 	if (err < 0 || p.curve.naxes == 0)

@@ -268,6 +268,8 @@ static int fit_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 {
 	int err;
 
+	if (b->again.counts)
+		return build_count_line(b, end_mm, w, diag);
 	if (!w->rapid && !w->ends && !b->escape && b->lift_axis < 0)
 		return build_fit_add(b, end_mm, w, diag);
 	err = interp_build_flush(b, diag);

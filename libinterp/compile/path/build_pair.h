@@ -9,7 +9,7 @@
 
 struct build_pair {
 	/* In. */
-	const struct interp_build *walks;	/* that counts what is walked */
+	struct interp_build *walks;	/* that counts what is walked */
 	const struct interp_machine *machine;
 	const struct interp_build_contour *contour;	/* [2] */
 	enum interp_strategy strategy;

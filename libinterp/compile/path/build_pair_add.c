@@ -127,6 +127,11 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	err = pair_alone(b, &plan, end_mm, w, diag);
 	if (err != -ENOENT)
 		return err;
+	if (b->again.counts) {
+		build_stand_at(b, end_mm, to);
+		return build_walk(b, (double)(m.longest >> INTERP_SUB_BITS),
+				  diag);
+	}
 	build_mm(b, BUILD_ALL_AXES, b->here, plan.from_mm);
 	build_mm(b, BUILD_ALL_AXES, to, plan.to_mm);
 	for (int i = 0; i < INTERP_NAXES; i++) {

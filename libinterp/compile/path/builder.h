@@ -41,6 +41,18 @@ struct build_descent {
 						 * it reached */
 };
 
+/* The text may be read once more, to count what will be walked
+ * (build_count.c). */
+struct build_again {
+	interp_build_again_fn *read;	/* NULL: it was, or cannot be */
+	void *arg;
+	bool counts;			/* this builder counts, and builds
+					 * nothing */
+	bool refused;			/* there is too much; with the diag for
+					 * who asked */
+	struct interp_diag diag;
+};
+
 struct interp_build {
 	struct interp_build_options o;
 	const struct pulse_strategy *how;	/* of o.strategy */
@@ -61,6 +73,7 @@ struct interp_build {
 	struct interp_probed probed;	/* before it begins */
 	double length_mm;
 	uint64_t walked;		/* lattice points, to build it */
+	struct build_again again;
 	struct table segs, nodes, arcs;	/* nodes: n counts columns */
 	struct table conds, escapes, runs, couples, bits;
 	struct table curves, pieces, stops, numbers;
@@ -185,15 +198,27 @@ struct build_step {
  * build_walk() - so many lattice points are walked to build it: are these still
  * few enough, with all before?  A short text may ask for days of them.
  *
- * Return: 0, or -EINVAL with @diag filled.
+ * Return: 0; -EINVAL with @diag filled; or as build_count_rest().
  */
 int build_walk(struct interp_build *b, double points,
 	       struct interp_diag *diag);
 
 /** build_walk_may() - the same, but they are not counted yet: what has at least
  *  so many is refused before it is walked. */
-int build_walk_may(const struct interp_build *b, double points,
+int build_walk_may(struct interp_build *b, double points,
 		   struct interp_diag *diag);
+
+/** build_count_rest() - a part of what may be walked was walked: is there too
+ *  much in the rest of the text?  Then -E2BIG, else 0 or -ENOMEM. */
+int build_count_rest(struct interp_build *b);
+
+/** build_count_line(), build_count_curve() - in a builder that counts. */
+int build_count_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		     const struct interp_build_word *w,
+		     struct interp_diag *diag);
+int build_count_curve(struct interp_build *b,
+		      const struct interp_build_curve *c,
+		      struct interp_diag *diag);
 
 /**
  * build_early() - if the place that the options name is passed, leave out what

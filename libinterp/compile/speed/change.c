@@ -201,8 +201,8 @@ static inline void add_bend(const struct bends *k, const double b[BENDS],
 	ret->behind += way * b[BEHIND] - d * tol * k->rounding[BEHIND];
 }
 
-/* What of the bend at the node goes on to both sides of it, or, at an end of the
- * run, to the one that there is.  A corner does not. */
+/* What of the bend at the node goes on to both sides of it, or, at an end of
+ * the run, to the one that there is.  A corner does not. */
 static double goes_on(const struct bends *k, const struct sure *sure)
 {
 	double least = INFINITY;

@@ -47,45 +47,21 @@ static inline float feed_of(const struct interp_seg *s)
 	       INFINITY : s->feed_mm_s;
 }
 
-/* What of a segment is compared with its neighbours. */
-struct pace {
-	float into, feed;		/* feed: INFINITY for a rapid */
-	bool moves;
-	uint8_t uncut;			/* those of its flags */
-};
-
-static inline struct pace pace_of(const struct interp_seg *s)
+/* @m: no segment before that one is slower. */
+static inline uint16_t hop_ahead(const struct interp_seg *s, float v,
+				 uint32_t m)
 {
-	const bool moves = s->kind < INTERP_BEGIN;
-	const uint8_t uncut = s->flags & INTERP_SEG_UNCUT;
-
-	return (struct pace) { moves ? into(s) : 0, feed_of(s), moves, uncut };
-}
-
-static inline uint16_t hop_ahead(const struct interp_seg *s,
-				 const struct pace *now,
-				 const struct pace *next)
-{
-	const float v = now->into;
-	uint32_t m = 1;
-
-	if (!now->moves)
-		return 1;
-	if (next->moves && now->uncut == next->uncut && next->into == v)
-		return hop_on(s[1].slower_ahead);
 	while (m < HOP_MAX && !may_stop(s + m) && into(s + m) >= v)
 		m += s[m].slower_ahead;
 	return hop_of(m);
 }
 
 /* @left: segments up to the last one. */
-static inline uint16_t hop_feed(const struct interp_seg *s, uint32_t left,
-				float v, float next)
+static inline uint16_t hop_feed(const struct interp_seg *s, uint32_t left)
 {
+	const float v = feed_of(s);
 	uint32_t m = 1;
 
-	if (left > 1 && next == v)
-		return s[1].slower_feed ? hop_on(s[1].slower_feed) : 0;
 	while (m < HOP_MAX && m < left && feed_of(s + m) >= v)
 		m = s[m].slower_feed ? m + s[m].slower_feed : left;
 	return m >= left ? 0 : hop_of(m);
@@ -97,14 +73,16 @@ static inline float back_into(const struct interp_seg *s)
 	       pass_least(s->node_mm_s, s->feed_max_mm_s);
 }
 
-/* @i: segments before it; the first one is entered by none. */
+/* @i: segments before it; the first two have hops already. */
 static inline uint16_t hop_behind(const struct interp_seg *s, uint32_t i,
 				  float v, float before)
 {
-	uint32_t m = 1;
+	uint32_t m = 1u + s[-1].slower_behind;
 
-	if (i > 1 && before == v)
-		return hop_on(s[-1].slower_behind);
+	if (before < v)
+		return 1;
+	if (before == v)
+		return hop_of(m);
 	while (m < HOP_MAX && m < i && back_into(s - m) >= v)
 		m += s[-(int64_t)m].slower_behind;
 	return hop_of(m);
@@ -149,7 +127,7 @@ static inline uint16_t softer_behind(const struct interp_seg *s, uint32_t i)
 {
 	uint32_t m = 1;
 
-	if (i > 1 && !stands(s - 1) && is_as_soft(s - 1, s))
+	if (!stands(s - 1) && is_as_soft(s - 1, s))
 		return s[-1].softer_behind ?
 		       hop_on(s[-1].softer_behind) : 0;
 	while (m < i && m < HOP_MAX && !stands(s - m) && !is_softer(s - m, s))
@@ -158,22 +136,44 @@ static inline uint16_t softer_behind(const struct interp_seg *s, uint32_t i)
 	return m == i ? 0 : hop_of(m);
 }
 
+/* Are they moved over in the same way, one cut as fast as the other? */
+static inline bool is_alike(const struct interp_seg *s,
+			    const struct interp_seg *as)
+{
+	return s->kind < INTERP_BEGIN && as->kind < INTERP_BEGIN &&
+	       s->flags == as->flags && s->feed_mm_s == as->feed_mm_s;
+}
+
+/* One that is like the next one: mostly its hops lead to the same places. */
+static inline void chain_alike(struct interp_seg *s, float v, float next)
+{
+	const uint16_t hop = s[1].slower_ahead, feed = s[1].slower_feed;
+
+	s->slower_ahead = next < v ? 1 : next == v ? hop_on(hop) :
+					 hop_ahead(s, v, 1u + hop);
+	s->slower_feed = feed ? hop_on(feed) : 0;
+}
+
 static void chain_ahead(void *arg)
 {
 	const struct pass *w = arg;
 	struct interp_seg *s = w->segs;
 	const uint32_t end = w->end;
-	struct pace next = pace_of(s + end);
+	float next = 0;
 
 	s[end].slower_ahead = s[end].slower_feed = s[end].softer_ahead = 0;
 	for (uint32_t i = end; i-- > 0; ) {
-		const struct pace now = pace_of(s + i);
+		const bool moves = s[i].kind < INTERP_BEGIN;
+		const float v = moves ? into(s + i) : 0;
 
-		s[i].slower_ahead = hop_ahead(s + i, &now, &next);
-		s[i].slower_feed = hop_feed(s + i, end - i, now.feed,
-					    next.feed);
+		if (is_alike(s + i, s + i + 1)) {
+			chain_alike(s + i, v, next);
+		} else {
+			s[i].slower_ahead = moves ? hop_ahead(s + i, v, 1) : 1;
+			s[i].slower_feed = hop_feed(s + i, end - i);
+		}
 		s[i].softer_ahead = softer_ahead(s + i, end - i);
-		next = now;
+		next = v;
 	}
 }
 
@@ -182,10 +182,12 @@ static void chain_behind(void *arg)
 	const struct pass *w = arg;
 	struct interp_seg *s = w->segs;
 	const uint32_t end = w->end;
-	float before = back_into(s);
+	float before = back_into(s + 1);
 
-	s[0].slower_behind = s[0].softer_behind = 0;
-	for (uint32_t i = 1; i <= end; i++) {
+	/* The first one is entered by none. */
+	s[0].slower_behind = s[0].softer_behind = s[1].softer_behind = 0;
+	s[1].slower_behind = 1;
+	for (uint32_t i = 2; i <= end; i++) {
 		const float v = back_into(s + i);
 
 		s[i].slower_behind = hop_behind(s + i, i, v, before);

@@ -85,6 +85,24 @@ struct interp_build_arc {
 /** interp_build_create() - an empty program. Return: NULL if out of memory. */
 struct interp_build *interp_build_create(const struct interp_build_options *o);
 
+/* Reads the same text into another builder, and tells nobody what it notes. */
+typedef int interp_build_again_fn(void *arg, struct interp_build *b,
+				  struct interp_diag *diag);
+
+/**
+ * interp_build_again() - if there is much to walk, @read is called once, by a
+ * call that adds a segment, to see whether it is too much.
+ *
+ * Then that call returns -E2BIG, and interp_build_refused() has the reason.
+ */
+void interp_build_again(struct interp_build *b, interp_build_again_fn *read,
+			void *arg);
+
+/** interp_build_refused() - Return: 0; or -EINVAL with @diag filled, line and
+ *  column too. */
+int interp_build_refused(const struct interp_build *b,
+			 struct interp_diag *diag);
+
 /** interp_build_destroy() - NULL is fine. */
 void interp_build_destroy(struct interp_build *b);
 
