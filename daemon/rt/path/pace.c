@@ -174,8 +174,8 @@ static uint32_t nearer(uint32_t hop, uint16_t other)
 	return other > 0 && other < hop ? other : hop;
 }
 
-/* From segment @i on, how many segments away the next one is that may be entered
- * slower, be braked on less, or not be entered at all. */
+/* From segment @i on, how many segments away the next one is that may be
+ * entered slower, be braked on less, or not be entered at all. */
 static uint32_t hop_from(const struct ahead *k, uint32_t i)
 {
 	const struct interp_seg *s = &k->c->cursor.p.segs[i];

@@ -32,7 +32,8 @@ static struct interp_program_head layout(const struct interp_build *b)
 		.npieces = b->pieces.n,
 		.nstops = b->stops.n,
 		.nnumbers = b->numbers.n,
-		.nbends = b->naxes > 1 ? (nsegs - 1) / INTERP_BENDS_SEGS + 1 : 0,
+		.nbends = b->naxes > 1 ? (nsegs - 1) / INTERP_BENDS_SEGS + 1 :
+					 0,
 		.naxes = b->naxes,
 		.strategy = b->o.strategy,
 		.tolerance_milli = b->o.tolerance_milli,
