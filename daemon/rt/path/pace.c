@@ -201,40 +201,57 @@ static double way_mm(const struct ahead *k, uint32_t i, uint32_t hop)
 			       a->s_mm + a->length_mm - b->s_mm - b->length_mm;
 }
 
-/* Up to a place to stand at: what lies between may be braked on less. */
-static void look_along(struct ahead *k, double to_mm)
+/* Up to the goal, if it is no farther than that way.  Return: false if it need
+ * look no farther. */
+static bool go_way(struct ahead *k, double goal_mm, double way_mm)
 {
-	const struct interp_cursor *at = &k->c->cursor;
-	double way = k->toward > 0 ? at->seg.length_mm - at->s_mm : at->s_mm;
-	double goal = k->toward * (to_mm - place_mm(k->c));
-	uint32_t i = at->index, hop = 1;
+	const bool meets = goal_mm <= k->left_mm + way_mm;
 
-	/* It still has to turn round. */
-	if (goal < -MOVER_ONTO_MM)
-		goal = INFINITY;
-	for (int n = 0; n < HOPS_MAX; n++) {
-		const bool meets = goal <= k->left_mm + way;
+	if (!go_on(k, meets ? goal_mm - k->left_mm : way_mm))
+		return false;
+	k->only_goal = meets;
+	if (meets)
+		meet_stop(k);
+	return !meets;
+}
+
+/* From the end of segment @i on.  Most cycles need not look so far. */
+static __attribute__((noinline)) void look_farther(struct ahead *k,
+						   double goal_mm, uint32_t i)
+{
+	const struct interp_program *p = &k->c->cursor.p;
+	uint32_t hop = 1;
+
+	for (int n = 0; n < HOPS_MAX && (k->toward > 0 || i > 0); n++) {
 		const struct interp_seg *s;
 
-		if (!go_on(k, meets ? goal - k->left_mm : way))
-			return;
-		k->only_goal = meets;
-		if (meets)
-			break;
-		if (k->toward < 0 && i == 0)
-			break;
 		i += (uint32_t)k->toward * hop;
-		s = &at->p.segs[i];
-		if (i >= at->p.head->nsegs || stops(k, i, s))
+		s = &p->segs[i];
+		if (i >= p->head->nsegs || stops(k, i, s))
 			break;
 		if (s->kind < INTERP_BEGIN) {
 			meet(k, into_mm_s(k, i, s));
 			k->a_mm_s2 = smaller(k->a_mm_s2, (double)s->a_mm_s2);
 		}
 		hop = hop_from(k, i);
-		way = way_mm(k, i, hop);
+		if (!go_way(k, goal_mm, way_mm(k, i, hop)))
+			return;
 	}
 	meet_stop(k);
+}
+
+/* Up to a place to stand at: what lies between may be braked on less. */
+static void look_along(struct ahead *k, double to_mm)
+{
+	const struct interp_cursor *at = &k->c->cursor;
+	const double goal = k->toward * (to_mm - place_mm(k->c));
+	/* It may still have to turn round. */
+	const double goal_mm = goal < -MOVER_ONTO_MM ? INFINITY : goal;
+	const double way = k->toward > 0 ? at->seg.length_mm - at->s_mm :
+					   at->s_mm;
+
+	if (go_way(k, goal_mm, way))
+		look_farther(k, goal_mm, at->index);
 }
 
 /* Beside the path it stands at corners, and where the path begins again: there
