@@ -95,7 +95,9 @@ static void take_form(struct nc_form *f, const uint8_t *p, const uint8_t *end)
 	};
 }
 
-/* The number at @first, of any form; the next one is expected in that form. */
+/* The number at @first, of any form; the next one is expected in that form.
+ * Few are read here, and the loop keeps its registers for the others. */
+__attribute__((noinline))
 static const uint8_t *read_any(struct nc_reader *r, struct nc_pattern_word *w,
 			       const uint8_t *first, double *ret)
 {

@@ -262,7 +262,9 @@ int interp_build_flush(struct interp_build *b, struct interp_diag *diag)
 	return 0;
 }
 
-/* A builder that may hold lines back. */
+/* A builder that may hold lines back.  What few need is not in the way of all
+ * others. */
+__attribute__((noinline))
 static int fit_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		    const struct interp_build_word *w, struct interp_diag *diag)
 {

@@ -267,21 +267,30 @@ static int take_or_stay(struct contour *k, struct contour_motion *m,
 	return stay(k, m->end_mm, &m->word, diag);
 }
 
+/* Most lines are none of these, and need no room for one. */
+__attribute__((noinline))
+static int collect_line(struct contour *k, const double end_mm[INTERP_NAXES],
+			const struct interp_build_word *w,
+			struct interp_diag *diag)
+{
+	struct contour_motion m;
+
+	motion_init(k, &m, end_mm, w);
+	return take_or_stay(k, &m, diag);
+}
+
 int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 		 const struct interp_build_word *w, struct interp_diag *diag)
 {
-	struct contour_motion m;
 	int err;
 
-	if (is_idle(k)) {
-		stand(k, end_mm);
-		err = interp_build_line(k->guides.build, end_mm, w, diag);
-		if (err == -EINVAL)
-			diag->line = w->line;
-		return err;
-	}
-	motion_init(k, &m, end_mm, w);
-	return take_or_stay(k, &m, diag);
+	if (!is_idle(k))
+		return collect_line(k, end_mm, w, diag);
+	stand(k, end_mm);
+	err = interp_build_line(k->guides.build, end_mm, w, diag);
+	if (err == -EINVAL)
+		diag->line = w->line;
+	return err;
 }
 
 /* Start and end at one distance from the centre, as the builder wants it. */
