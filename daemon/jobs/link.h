@@ -57,6 +57,7 @@ struct link {
 	uint64_t events_before;		/* written before it was opened */
 	int64_t moved_us, looked_us;
 	bool moved;			/* a new cycle was seen since opening */
+	bool ended;			/* its process has */
 	uint64_t next_id;
 	struct link_pending pending[LINK_PENDING];
 };

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Either program is killed at any time: no job is lost, nothing moves."""
 
+import signal
 import subprocess
 import time
 
@@ -41,6 +42,20 @@ def test_a_job_that_ends_while_edmd_jobs_is_away_is_recorded(machine):
     j = c.job_where("job", "done")
     assert abs(j["path_mm"] - 2) < 1e-3
     c.job_where("behind", "done")
+
+
+def test_a_job_that_ends_just_before_edmd_does_is_recorded(machine):
+    """edmd-jobs is stopped over it, so it sees neither."""
+    c = begin(machine, SLOW_JOB)
+    log = machine.folder / "edmd.log"
+    machine.jobs.send_signal(signal.SIGSTOP)
+    until(lambda: "ended: done" in log.read_text())
+    assert machine.end("edmd") == 0
+    machine.jobs.send_signal(signal.SIGCONT)
+    machine.start_edmd()
+    j = c.job_where("job", "done")
+    assert abs(j["path_mm"] - 2) < 1e-3
+    assert c.status_where(lambda s: s.daemon == "ok").interrupted == ""
 
 
 def test_edmd_jobs_ends_in_order_and_the_job_goes_on(machine):
