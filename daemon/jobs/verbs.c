@@ -533,6 +533,23 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 	verbs_answer(j, c, 0, "starts when its turn comes");
 }
 
+/* What begins after this is not kept back by where the axes were. */
+static void start_nothing(struct jobs *j, const struct jobs_lcm_command *c)
+{
+	const char *why = queue_unready(j);
+
+	if (!j->elsewhere)
+		why = "no job in the queue; submit one";
+	if (why) {
+		verbs_answer(j, c, REFUSED, why);
+		return;
+	}
+	interrupt_answered(j);
+	queue_go(j);
+	verbs_answer(j, c, 0, "the axes count as standing where they are "
+		     "shown; no job waits");
+}
+
 static void verb_start(struct jobs *j, const struct verb *v,
 		       const struct jobs_lcm_command *c)
 {
@@ -552,7 +569,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	} else if (store_head(j->store, &job) == 0) {
 		start_behind(j, c, &job);
 	} else {
-		verbs_answer(j, c, REFUSED, "no job in the queue; submit one");
+		start_nothing(j, c);
 	}
 }
 
