@@ -304,12 +304,11 @@ static void follow_fault(struct jobs *j)
 	set_waiting(j, true);
 }
 
-static void follow_running(struct jobs *j)
+/* It may be held, or over, before it was ever seen to run. */
+static void follow_begin(struct jobs *j)
 {
 	struct queue *q = &j->queue;
 
-	set_state(j, JOB_RUNNING);
-	q->ended = SHM_OUTCOME_NONE;
 	if (q->job.begun_us)
 		return;
 	q->job.begun_us = jobs_utime();
@@ -321,11 +320,18 @@ static void follow_running(struct jobs *j)
 	}, "job %s begun", q->job.name);
 }
 
+static void follow_running(struct jobs *j)
+{
+	set_state(j, JOB_RUNNING);
+	j->queue.ended = SHM_OUTCOME_NONE;
+	follow_begin(j);
+}
+
 static void follow_hold(struct jobs *j, int64_t now_us)
 {
 	struct queue *q = &j->queue;
 
-	if (q->job.begun_us || q->snap.job_cycles) {
+	if (q->job.begun_us) {
 		set_state(j, JOB_HELD);
 		return;
 	}
@@ -377,6 +383,8 @@ static void follow_state(struct jobs *j, int64_t now_us)
 {
 	struct queue *q = &j->queue;
 
+	if (q->snap.job_cycles)
+		follow_begin(j);
 	switch (q->snap.state) {
 	case SHM_IDLE:
 		follow_ended(j, q->snap.outcome);

@@ -69,6 +69,22 @@ def test_edmd_jobs_ends_in_order_and_the_job_goes_on(machine):
     c.job_where("job", "done")
 
 
+def test_a_job_that_was_held_at_once_stays_when_edmd_jobs_ends(machine):
+    """It stood again before it was ever seen to run."""
+    c = machine.client
+    assert c.submit(b"G21 G90\nG1 X0.001 F60\nM0\nG1 X1\nM30\n",
+                    "job").code == 0
+    c.status_where(lambda s: s.job_state == "held")
+    assert machine.end("jobs") == 0
+    machine.start_jobs()
+    s = c.status_where(lambda s: s.daemon == "ok")
+    assert (s.job, s.job_state) == ("job", "held")
+    assert c.job("job")["begun_us"]
+    assert [e.kind for e in c.events].count("begun") == 1
+    assert c.ask("start").code == 0
+    c.job_where("job", "done")
+
+
 def test_a_queue_survives_edmd_jobs(machine):
     c = begin(machine, SLOW_JOB)
     for i in range(3):
