@@ -58,6 +58,21 @@ def test_a_job_that_ends_just_before_edmd_does_is_recorded(machine):
     assert c.status_where(lambda s: s.daemon == "ok").interrupted == ""
 
 
+def test_an_end_that_only_a_dead_edmd_saw_is_told(machine):
+    """Both are killed before edmd-jobs has seen it; edmd's memory stays."""
+    c = begin(machine, SLOW_JOB)
+    log = machine.folder / "edmd.log"
+    machine.jobs.send_signal(signal.SIGSTOP)
+    until(lambda: "ended: done" in log.read_text())
+    machine.kill("jobs")
+    machine.kill("edmd")
+    machine.start()
+    j = c.job_where("job", "done")
+    assert abs(j["path_mm"] - 2) < 1e-3
+    ended = c.heard(lambda: [e for e in c.events if e.kind == "ended"])
+    assert [(e.job, e.outcome) for e in ended] == [("job", "done")]
+
+
 def test_edmd_jobs_ends_in_order_and_the_job_goes_on(machine):
     c = begin(machine)
     place = c.statuses[-1].place_mm
