@@ -122,6 +122,26 @@ void queue_wait(struct jobs *j)
 	set_waiting(j, true);
 }
 
+/* A job that has not begun, whether it is loaded or not. */
+static bool is_to_begin(const struct jobs *j)
+{
+	const struct queue *q = &j->queue;
+
+	return q->job.n && !queue_is_leaving(q) ? !queue_has_begun(j) :
+						  q->behind > 0;
+}
+
+void queue_keep(struct jobs *j)
+{
+	if (is_to_begin(j))
+		queue_wait(j);
+}
+
+bool queue_is_kept(const struct jobs *j)
+{
+	return j->queue.waiting && is_to_begin(j);
+}
+
 static void set_state(struct jobs *j, enum job_state state)
 {
 	struct queue *q = &j->queue;
