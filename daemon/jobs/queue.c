@@ -332,6 +332,7 @@ static void follow_begin(struct jobs *j)
 	if (q->job.begun_us)
 		return;
 	q->job.begun_us = jobs_utime();
+	jobs_with_note(j);
 	store_begin(j->store, q->job.n, q->job.begun_us);
 	queue_unpromise(j);
 	interrupt_answered(j);

@@ -72,6 +72,7 @@ static void settle_one(void *arg, const struct shm_ended *e)
 		return;
 	log_notice("queue: edmd says that job %s, which is %s in the store, "
 		   "has ended", job.id, store_state_name(job.state));
+	jobs_with_note(j);
 	record(j, job.n, state, e);
 	/* Who told it before could not store that it did. */
 	jobs_note(j, &(struct jobs_note) {
