@@ -67,6 +67,7 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 	/* What interrupted it has booked it: interrupt.c. */
 	if (state != JOB_INTERRUPTED)
 		electrode_book(j);
+	jobs_with_note(j);
 	queue_record(j, state, reason);
 	queue_recount(j);
 	q->ended = SHM_OUTCOME_NONE;

@@ -16,6 +16,11 @@
 
 struct jobs;
 
+/* Why nothing begins while struct jobs has axes that are `elsewhere`. */
+#define INTERRUPT_ELSEWHERE \
+	"an axis that cannot be homed was last seen at another place than is " \
+	"shown; edmctl status names it; see where it stands, then edmctl start"
+
 /**
  * checkpoint_tick() - write a checkpoint if one is due; to be called every 20
  * ms.

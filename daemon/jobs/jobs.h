@@ -71,6 +71,7 @@ struct jobs {
 	const char *store_told;		/* store_why() as it was last
 					 * reported */
 	bool act_open;			/* act.c: a transaction is open */
+	bool note_open;			/* the same, up to a note */
 	struct values *values;		/* NULL until they are asked for */
 	int claim;			/* shm_writer_claim(); -1: none */
 };
@@ -86,6 +87,12 @@ struct jobs_note {
 	const char *kind, *job, *outcome;
 	double place_mm;
 };
+
+/**
+ * jobs_with_note() - what is written from here on is on the disk together with
+ * the next jobs_note(), which comes before the loop goes on, or not at all.
+ */
+void jobs_with_note(struct jobs *j);
 
 /** jobs_note() - record and publish it; @text is as for printf. */
 void jobs_note(struct jobs *j, const struct jobs_note *n,

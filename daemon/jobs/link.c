@@ -93,6 +93,7 @@ static int link_open(struct link *l, int64_t now_us)
 	l->events_before = __atomic_load_n(&l->status->event_next,
 					   __ATOMIC_ACQUIRE);
 	l->moved = false;
+	l->ended = false;
 	l->moved_us = now_us;
 	shm_snapshot(l->status, &l->snap);
 	return 0;
@@ -153,14 +154,17 @@ static void link_drop(struct link *l)
 		link_set(l, LINK_LOST);
 }
 
+/* One that ends in order takes its memory with it.  What it wrote last is read
+ * once more before the memory is dropped. */
 static bool link_is_gone(struct link *l, int64_t now_us)
 {
-	if (instance_of(l) != l->instance)
+	if (instance_of(l) != l->instance || l->ended)
 		return true;
 	if (now_us - l->looked_us < LOOK_US)
 		return false;
 	l->looked_us = now_us;
-	return !shm_alive(l->status);
+	l->ended = !shm_alive(l->status);
+	return false;
 }
 
 /* Who hears that the state refuses is told the state.  The snapshot may be

@@ -58,6 +58,7 @@ struct link {
 	int64_t moved_us, looked_us;
 	int wrong;			/* -errno of the last try to open it */
 	bool moved;			/* a new cycle was seen since opening */
+	bool ended;			/* its process has */
 	uint64_t next_id;
 	struct link_pending pending[LINK_PENDING];
 };

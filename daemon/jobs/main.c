@@ -69,6 +69,22 @@ int64_t jobs_utime(void)
 	return clock_us(CLOCK_REALTIME);
 }
 
+/* An act is one transaction anyhow. */
+void jobs_with_note(struct jobs *j)
+{
+	if (!j->act_open && !j->note_open)
+		j->note_open = store_together(j->store, true) == 0;
+}
+
+/* Return: as act_commit(). */
+static int commit_note(struct jobs *j)
+{
+	const int err = j->note_open ? store_commit(j->store) : 0;
+
+	j->note_open = false;
+	return err;
+}
+
 void jobs_note(struct jobs *j, const struct jobs_note *n,
 	       const char *text, ...)
 {
@@ -85,6 +101,8 @@ void jobs_note(struct jobs *j, const struct jobs_note *n,
 		.outcome = n->outcome ? n->outcome : "", .text = words,
 		.place_mm = n->place_mm, .now_us = jobs_utime(),
 	});
+	if (commit_note(j) != 0)
+		err = STORE_KEPT;
 	/* What is reported is true.  If the disk does not have it, that is
 	 * reported too. */
 	if (err != 0)

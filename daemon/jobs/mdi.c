@@ -4,6 +4,7 @@
 
 #include "act.h"
 #include "compiler.h"
+#include "interrupt.h"
 #include "offset.h"
 
 #include "plain.h"
@@ -30,6 +31,7 @@ struct mdi_check {
 	struct asker asker;
 	int64_t signed_us;		/* when that one asked last */
 	int32_t pos[SHM_NAXES];		/* where they begin */
+	bool given_up;
 };
 
 const char *mdi_why_not(const struct jobs *j)
@@ -45,6 +47,8 @@ const char *mdi_why_not(const struct jobs *j)
 		       "away";
 	if (j->queue.behind > 0 || j->queue.compile)
 		return "jobs wait in the queue; edmctl remove takes them out";
+	if (j->elsewhere)
+		return INTERRUPT_ELSEWHERE;
 	if (j->link.snap.state != SHM_IDLE || j->link.snap.unplaced)
 		return "the machine is not idle; wait until it stands";
 	return NULL;
@@ -80,6 +84,8 @@ static const char *changed(struct jobs *j, const struct mdi_check *k)
 
 	if (why)
 		return why;
+	if (k->given_up)
+		return "a stop or a hold came while it was checked; again";
 	if (memcmp(k->pos, j->link.snap.pos, sizeof(k->pos)) != 0)
 		return "the axes moved while it was checked; again";
 	return jobs_lcm_is_late(k->signed_us) ?
@@ -222,6 +228,12 @@ void mdi_heard(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	if (j->mdi && reply_asker_is(&j->mdi->asker, c))
 		j->mdi->signed_us = c->signed_us;
+}
+
+void mdi_give_up(struct jobs *j)
+{
+	if (j->mdi)
+		j->mdi->given_up = true;
 }
 
 void mdi_fini(struct jobs *j)

@@ -38,6 +38,9 @@ void mdi_run(struct jobs *j, const struct jobs_lcm_command *c,
 /** mdi_heard() - @c came once more: the one who asked still waits. */
 void mdi_heard(struct jobs *j, const struct jobs_lcm_command *c);
 
+/** mdi_give_up() - what is being checked must not begin. */
+void mdi_give_up(struct jobs *j);
+
 /** mdi_fini() - forget what is being checked; a repeat checks it anew. */
 void mdi_fini(struct jobs *j);
 

@@ -122,6 +122,26 @@ void queue_wait(struct jobs *j)
 	set_waiting(j, true);
 }
 
+/* A job that has not begun, whether it is loaded or not. */
+static bool is_to_begin(const struct jobs *j)
+{
+	const struct queue *q = &j->queue;
+
+	return q->job.n && !queue_is_leaving(q) ? !queue_has_begun(j) :
+						  q->behind > 0;
+}
+
+void queue_keep(struct jobs *j)
+{
+	if (is_to_begin(j))
+		queue_wait(j);
+}
+
+bool queue_is_kept(const struct jobs *j)
+{
+	return j->queue.waiting && is_to_begin(j);
+}
+
 static void set_state(struct jobs *j, enum job_state state)
 {
 	struct queue *q = &j->queue;
@@ -309,15 +329,15 @@ static void follow_fault(struct jobs *j)
 	set_waiting(j, true);
 }
 
-static void follow_running(struct jobs *j)
+/* It may be held, or over, before it was ever seen to run. */
+static void follow_begin(struct jobs *j)
 {
 	struct queue *q = &j->queue;
 
-	set_state(j, JOB_RUNNING);
-	q->ended = SHM_OUTCOME_NONE;
 	if (q->job.begun_us)
 		return;
 	q->job.begun_us = jobs_utime();
+	jobs_with_note(j);
 	store_begin(j->store, q->job.n, q->job.begun_us);
 	queue_unpromise(j);
 	interrupt_answered(j);
@@ -326,11 +346,18 @@ static void follow_running(struct jobs *j)
 	}, "job %s begun", q->job.name);
 }
 
+static void follow_running(struct jobs *j)
+{
+	set_state(j, JOB_RUNNING);
+	j->queue.ended = SHM_OUTCOME_NONE;
+	follow_begin(j);
+}
+
 static void follow_hold(struct jobs *j, int64_t now_us)
 {
 	struct queue *q = &j->queue;
 
-	if (q->job.begun_us || q->snap.job_cycles) {
+	if (q->job.begun_us) {
 		set_state(j, JOB_HELD);
 		return;
 	}
@@ -382,6 +409,8 @@ static void follow_state(struct jobs *j, int64_t now_us)
 {
 	struct queue *q = &j->queue;
 
+	if (q->snap.job_cycles)
+		follow_begin(j);
 	switch (q->snap.state) {
 	case SHM_IDLE:
 		follow_ended(j, q->snap.outcome);

@@ -91,6 +91,10 @@ void queue_started(struct jobs *j, int code);
 const char *queue_unready(const struct jobs *j);
 /** queue_wait() - nothing starts until queue_go() is called. */
 void queue_wait(struct jobs *j);
+/** queue_keep() - if a job would begin next, it waits for a start. */
+void queue_keep(struct jobs *j);
+/** queue_is_kept() - is there such a job, and does it wait? */
+bool queue_is_kept(const struct jobs *j);
 /** queue_is_faulted() - is edmd in fault at this moment? */
 bool queue_is_faulted(const struct jobs *j);
 

@@ -30,10 +30,39 @@ static bool is_of(const struct shm_ended *e, const struct store_job *job)
 	       (e->outcome == SHM_OUTCOME_DONE || e->job_cycles > 0);
 }
 
+static const char *why_ended(const struct shm_ended *e)
+{
+	return e->outcome == SHM_OUTCOME_DONE ? "" :
+	       e->outcome == SHM_OUTCOME_FAULT ? "after a fault" :
+	       "by command";
+}
+
+static void record(struct jobs *j, uint32_t n, enum job_state state,
+		   const struct shm_ended *e)
+{
+	const double period_s = (double)e->period_ns / 1e9;
+
+	store_end(j->store, n, &(struct store_end) {
+		.state = state, .reason = why_ended(e),
+		.now_us = e->time_ns / 1000, .place_mm = e->far_mm,
+		.length_mm = e->length_mm, .depth_mm = e->depth_mm,
+		.job_s = (double)e->job_cycles * period_s,
+		.jumps = e->jumps, .retracts = e->retracts,
+		.shorts = e->shorts, .arcs = e->arcs,
+		.erode_s = (double)e->erode_cycles * period_s,
+		.energy_j = e->energy_j,
+	});
+	tally_settle(j, n, e);
+	electrode_settle(j, n, e);
+	store_set_loaded(j->store, n, false);
+}
+
 static void settle_one(void *arg, const struct shm_ended *e)
 {
 	struct jobs *j = arg;
-	const bool done = e->outcome == SHM_OUTCOME_DONE;
+	const enum job_state state = e->outcome == SHM_OUTCOME_DONE ?
+				     JOB_DONE : JOB_STOPPED;
+	const char *why = why_ended(e);
 	struct store_job job;
 
 	/* The program that is in edmd now is followed by its snapshot. */
@@ -41,27 +70,18 @@ static void settle_one(void *arg, const struct shm_ended *e)
 	    store_find_number(j->store, e->program, &job) < 0 ||
 	    is_over(&job) || !is_of(e, &job))
 		return;
-	log_notice("queue: edmd says that job %s, which is %s in the store, %s",
-		   job.id, store_state_name(job.state),
-		   done ? "was done" : "was begun and ended");
-	store_end(j->store, job.n, &(struct store_end) {
-		.state = done ? JOB_DONE : JOB_STOPPED,
-		.reason = done ? "" : e->outcome == SHM_OUTCOME_FAULT ?
-			  "after a fault" : "by command",
-		.now_us = e->time_ns / 1000, .place_mm = e->far_mm,
-		.length_mm = e->length_mm, .depth_mm = e->depth_mm,
-		.job_s = (double)e->job_cycles * (double)e->period_ns / 1e9,
-		.jumps = e->jumps, .retracts = e->retracts,
-		.shorts = e->shorts, .arcs = e->arcs,
-		.erode_s = (double)e->erode_cycles *
-			   (double)e->period_ns / 1e9,
-		.energy_j = e->energy_j,
-	});
-	tally_settle(j, job.n, e);
-	electrode_settle(j, job.n, e);
-	store_set_loaded(j->store, job.n, false);
+	log_notice("queue: edmd says that job %s, which is %s in the store, "
+		   "has ended", job.id, store_state_name(job.state));
+	jobs_with_note(j);
+	record(j, job.n, state, e);
+	/* Who told it before could not store that it did. */
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "ended", .job = job.id, .place_mm = e->far_mm,
+		.outcome = store_state_name(state),
+	}, "job %s %s%s%s", job.name, store_state_name(state),
+		  *why ? ": " : "", why);
 	if (j->queue.job.n == job.n) {
-		j->queue.job.state = done ? JOB_DONE : JOB_STOPPED;
+		j->queue.job.state = state;
 		queue_drop(j, false);
 	}
 	queue_recount(j);

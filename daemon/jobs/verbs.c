@@ -146,6 +146,9 @@ static const char *state_words(uint32_t state)
 	}
 }
 
+static void verb_stand(struct jobs *j, const struct verb *v,
+		       const struct jobs_lcm_command *c);
+
 static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
@@ -162,6 +165,9 @@ static void on_answer(void *arg, int code)
 		verbs_answer(j, &c, EX_UNAVAILABLE, gone(code));
 	else if (code == -ESHUTDOWN)
 		;			/* the next service knows more */
+	else if (code > 0 && a->verb->run == verb_stand && queue_is_kept(j))
+		verbs_answer(j, &c, 0, "nothing runs; what waits begins at the "
+			     "next start");
 	else if (code == SHM_NO_PROGRAM)
 		verbs_answer(j, &c, REFUSED, "no job is loaded; submit one");
 	else if (code == SHM_NOT_UP)
@@ -297,6 +303,15 @@ static void verb_machine(struct jobs *j, const struct verb *v,
 			 const struct jobs_lcm_command *c)
 {
 	ask_machine(j, v, c, 0);
+}
+
+/* A job that is still compiled or loaded would begin behind it. */
+static void verb_stand(struct jobs *j, const struct verb *v,
+		       const struct jobs_lcm_command *c)
+{
+	queue_keep(j);
+	mdi_give_up(j);
+	verb_machine(j, v, c);
 }
 
 static void refuse_field(struct jobs *j, const struct jobs_lcm_command *c)
@@ -533,6 +548,23 @@ static void start_behind(struct jobs *j, const struct jobs_lcm_command *c,
 	verbs_answer(j, c, 0, "starts when its turn comes");
 }
 
+/* What begins after this is not kept back by where the axes were. */
+static void start_nothing(struct jobs *j, const struct jobs_lcm_command *c)
+{
+	const char *why = queue_unready(j);
+
+	if (!j->elsewhere)
+		why = "no job in the queue; submit one";
+	if (why) {
+		verbs_answer(j, c, REFUSED, why);
+		return;
+	}
+	interrupt_answered(j);
+	queue_go(j);
+	verbs_answer(j, c, 0, "the axes count as standing where they are "
+		     "shown; no job waits");
+}
+
 static void verb_start(struct jobs *j, const struct verb *v,
 		       const struct jobs_lcm_command *c)
 {
@@ -552,7 +584,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	} else if (store_head(j->store, &job) == 0) {
 		start_behind(j, c, &job);
 	} else {
-		verbs_answer(j, c, REFUSED, "no job in the queue; submit one");
+		start_nothing(j, c);
 	}
 }
 
@@ -560,11 +592,11 @@ static void verb_start(struct jobs *j, const struct verb *v,
 static const struct verb verbs[] = {
 	{ "start", ROLE_OPERATOR, VERB_ACTS, verb_start, SHM_DO_START,
 	  "a job that is ready or held" },
-	{ "hold", ROLE_OPERATOR, VERB_ENDS, verb_machine, SHM_DO_HOLD,
+	{ "hold", ROLE_OPERATOR, VERB_ENDS, verb_stand, SHM_DO_HOLD,
 	  "a job that runs" },
 	{ "resume", ROLE_OPERATOR, VERB_ACTS, verb_resume, SHM_DO_RESUME,
 	  "a job that is held" },
-	{ "stop", ROLE_OPERATOR, VERB_ENDS, verb_machine, SHM_DO_STOP,
+	{ "stop", ROLE_OPERATOR, VERB_ENDS, verb_stand, SHM_DO_STOP,
 	  "a job" },
 	{ "retract", ROLE_OPERATOR, VERB_ACTS, verb_retract, SHM_DO_RETRACT,
 	  "a job, and no fault; reset first" },

@@ -3,16 +3,13 @@
 #include "waits.h"
 
 #include "faults.h"
+#include "interrupt.h"
 #include "verb.h"
 
 #include <errno.h>
 #include <jansson.h>
 #include <stdio.h>
 #include <sysexits.h>
-
-#define ELSEWHERE	"an axis that cannot be homed was last seen at another " \
-			"place than is shown; edmctl status names it; see " \
-			"where it stands, then edmctl start"
 
 /* What keeps every job from beginning; NULL: nothing does. */
 static const char *why_none(const struct jobs *j)
@@ -52,7 +49,7 @@ static const char *why_loaded(const struct jobs *j)
 	switch (j->queue.job.state) {
 	case JOB_READY:
 		if (j->elsewhere)
-			return ELSEWHERE;
+			return INTERRUPT_ELSEWHERE;
 		return j->queue.job.hold || j->queue.waiting ?
 		       "it is ready; edmctl start begins it" : "";
 	case JOB_HELD:
@@ -99,7 +96,7 @@ const char *waits_why(const struct jobs *j, const struct store_job *job,
 		snprintf(to, size, "job %s, %s, is before it and %s",
 			 q->job.id, q->job.name, does(q->job.state));
 	else if (j->elsewhere)
-		snprintf(to, size, "%s", ELSEWHERE);
+		snprintf(to, size, "%s", INTERRUPT_ELSEWHERE);
 	else if (q->waiting)
 		snprintf(to, size, "the queue waits, because a job ended early "
 			 "or edmd was started anew; edmctl start");

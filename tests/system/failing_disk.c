@@ -4,7 +4,8 @@
  * demand
  *
  * While the file $EDM_DISK_ERRNO exists, every call that changes a file below
- * $EDM_DISK fails with the error number in that file.
+ * $EDM_DISK fails with the error number in that file.  If the number is -N, the
+ * process ends at the Nth call instead, as if it was killed.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -20,6 +21,7 @@
 static int failure(void)
 {
 	const char *name = getenv("EDM_DISK_ERRNO");
+	static int calls;
 	char text[16] = "";
 	int fd = name ? (int)syscall(257, AT_FDCWD, name, O_RDONLY, 0) : -1;
 
@@ -28,7 +30,11 @@ static int failure(void)
 	if (read(fd, text, sizeof(text) - 1) < 0)
 		text[0] = '\0';
 	close(fd);
-	return atoi(text);
+	if (atoi(text) >= 0)
+		return atoi(text);
+	if (++calls >= -atoi(text))
+		_exit(137);
+	return 0;
 }
 
 static int is_ours(const char *path)

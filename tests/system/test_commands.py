@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands to a running job, each answered once."""
 
+import json
 import subprocess
 import time
 
+import pytest
 import rig
 from rig import QUICK_JOB, SLOW_JOB
 
@@ -172,3 +174,40 @@ def test_a_client_that_has_just_come_hears_the_status_at_once(machine):
         c.send_guest()
     c.hear(0.3)
     assert len(c.statuses) <= 100 * (time.monotonic() - begun) + 12
+
+
+# It takes a while to compile: some ten million lattice points.
+LONG_TO_LOAD = (b"G21 G90 F6000\nM98 P1 L30\nM30\nO1\n"
+                + b"G5 X100 Y0 I30 J60 P-30 Q-60\n"
+                  b"G5 X0 Y0 I30 J60 P-30 Q-60\n" * 2 + b"M99\n")
+
+
+@pytest.mark.parametrize("verb", ("stop", "hold"))
+def test_what_is_about_to_begin_waits_for_start(machine, verb):
+    """The answer to a stop is never followed by a motion."""
+    c = machine.client
+    assert c.submit(LONG_TO_LOAD, "job", timeout=20).code == 0
+    a = c.ask(verb)
+    assert a.code == 0, a.reason
+    if a.reason == "done":      # it came late
+        return
+    assert "next start" in a.reason
+    c.job_where("job", "ready")
+    c.hear(0.5)
+    assert c.job("job")["state"] == "ready" and c.status().place_mm == 0
+    assert c.ask("start").code == 0
+    c.status_where(lambda s: s.job_state == "running")
+
+
+def test_lines_that_are_checked_do_not_begin_after_a_stop(machine):
+    c = machine.client
+    text = "F6000\n" + ("G5 X100 Y0 I30 J60 P-30 Q-60\n"
+                        "G5 X0 Y0 I30 J60 P-30 Q-60\n") * 10
+    seq = c.send_command("mdi", text=text, seq=c.number())
+    c.ask("stop")
+    a = c.heard(lambda: c.acks_to(seq))[0]
+    if a.code == 0:         # the stop came late: they are loaded, or ended
+        assert c.job(a.reason)["state"] != "done"
+        return
+    assert a.code == 1 and "came while it was checked" in a.reason, a.reason
+    assert json.loads(c.ask("history").body) == []

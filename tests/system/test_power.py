@@ -158,6 +158,28 @@ def test_an_idle_machine_does_not_say_that_it_is_where_it_is_not(idle):
     assert c.status().lost == ""
 
 
+def test_lines_begin_only_when_somebody_has_seen_where_it_stands(idle):
+    """They never wait: what cannot begin now is refused."""
+    m, c = idle, idle.client
+    m.start()
+    assert c.ask("mdi", text="G0 X0.2").code == 0
+    c.status_where(lambda s: not s.job and s.pos_mm[0] == 0.2)
+    c.hear(1)
+    die(m)
+    m.start()
+    c.status_where(lambda s: s.lost == "X", 10)
+    a = c.ask("mdi", text="G91 G0 X0.1")
+    assert a.code == 1 and "see where it stands" in a.reason, a.reason
+    assert c.status().pos_mm[0] == 0
+    # With no job in the queue a start says only that.
+    a = c.ask("start")
+    assert a.code == 0 and "no job waits" in a.reason, a.reason
+    assert c.ask("start").code == 1
+    assert c.status().lost == ""
+    assert c.ask("mdi", text="G91 G0 X0.1").code == 0
+    c.status_where(lambda s: not s.job and s.pos_mm[0] == 0.1)
+
+
 def test_what_was_interrupted_and_removed_leaves_the_axes_uncertain(idle):
     m, c = idle, idle.client
     m.start()

@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import signal
 import subprocess
 import time
 
@@ -45,6 +46,35 @@ def test_a_job_that_ends_while_edmd_jobs_is_away_is_recorded(machine):
     c.job_where("behind", "done")
 
 
+def test_a_job_that_ends_just_before_edmd_does_is_recorded(machine):
+    """edmd-jobs is stopped over it, so it sees neither."""
+    c = begin(machine, SLOW_JOB)
+    log = machine.folder / "edmd.log"
+    machine.jobs.send_signal(signal.SIGSTOP)
+    until(lambda: "ended: done" in log.read_text())
+    assert machine.end("edmd") == 0
+    machine.jobs.send_signal(signal.SIGCONT)
+    machine.start_edmd()
+    j = c.job_where("job", "done")
+    assert abs(j["path_mm"] - 2) < 1e-3
+    assert c.status_where(lambda s: s.daemon == "ok").interrupted == ""
+
+
+def test_an_end_that_only_a_dead_edmd_saw_is_told(machine):
+    """Both are killed before edmd-jobs has seen it; edmd's memory stays."""
+    c = begin(machine, SLOW_JOB)
+    log = machine.folder / "edmd.log"
+    machine.jobs.send_signal(signal.SIGSTOP)
+    until(lambda: "ended: done" in log.read_text())
+    machine.kill("jobs")
+    machine.kill("edmd")
+    machine.start()
+    j = c.job_where("job", "done")
+    assert abs(j["path_mm"] - 2) < 1e-3
+    ended = c.heard(lambda: [e for e in c.events if e.kind == "ended"])
+    assert [(e.job, e.outcome) for e in ended] == [("job", "done")]
+
+
 def test_edmd_jobs_ends_in_order_and_the_job_goes_on(machine):
     c = begin(machine)
     place = c.statuses[-1].place_mm
@@ -53,6 +83,22 @@ def test_edmd_jobs_ends_in_order_and_the_job_goes_on(machine):
     machine.start_jobs()
     s = c.status_where(lambda s: s.job_state == "running")
     assert s.place_mm > place + 0.3
+    c.job_where("job", "done")
+
+
+def test_a_job_that_was_held_at_once_stays_when_edmd_jobs_ends(machine):
+    """It stood again before it was ever seen to run."""
+    c = machine.client
+    assert c.submit(b"G21 G90\nG1 X0.001 F60\nM0\nG1 X1\nM30\n",
+                    "job").code == 0
+    c.status_where(lambda s: s.job_state == "held")
+    assert machine.end("jobs") == 0
+    machine.start_jobs()
+    s = c.status_where(lambda s: s.daemon == "ok")
+    assert (s.job, s.job_state) == ("job", "held")
+    assert c.job("job")["begun_us"]
+    assert [e.kind for e in c.events].count("begun") == 1
+    assert c.ask("start").code == 0
     c.job_where("job", "done")
 
 

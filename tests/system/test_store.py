@@ -73,6 +73,36 @@ WORDS = {
 }
 
 
+def told(c, job):
+    """How often each kind of event of a job is in the history."""
+    kinds = [e["kind"] for e in json.loads(c.ask("events").body)
+             if e["job"] == job]
+    return {k: kinds.count(k) for k in ("begun", "ended")}
+
+
+def test_wherever_it_dies_a_begin_and_an_end_are_told_once(failing):
+    """It ends at the Nth write after a start, and is started again."""
+    m, c = failing, failing.client
+    m.start()
+    for n in range(2, 61, 2):
+        job = f"job-{n}"
+        assert c.submit(QUICK_JOB, job, hold=True).code == 0
+        c.job_where(job, "ready")
+        m.fail(-n)
+        c.send_command("start")
+        c.heard(lambda: m.jobs.poll() is not None or
+                [e for e in c.events if (e.job, e.kind) == (job, "ended")])
+        m.heal()
+        if m.jobs.poll() is not None:
+            m.start_jobs()
+            c.status_where(lambda s: s.daemon == "ok")
+        if c.job(job)["state"] in ("queued", "ready"):
+            c.job_where(job, "ready")
+            c.ask("start")
+        c.job_where(job, "done")
+        assert told(c, job) == {"begun": 1, "ended": 1}, n
+
+
 @pytest.mark.parametrize("number", WORDS, ids=errno.errorcode.get)
 def test_a_disk_that_fails_in_a_cut_stops_nothing(failing, number):
     m = failing
