@@ -116,6 +116,8 @@ static void raise_node(struct pass *w, const struct beside *k, uint32_t i)
 		heading_of(&w->ways, i - 1 + n, &h[n]);
 		w->a_own_mm_s2[n] = (double)w->segs[i - 1 + n].a_mm_s2;
 	}
+	/* They are not asked in their order. */
+	w->gate.way.to_mm = -INFINITY;
 	v = smaller(over_mm_s(w, k->at, i),
 		    pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first));
 	most = pass_least(k->most_mm_s, (float)v);

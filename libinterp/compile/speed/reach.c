@@ -70,39 +70,52 @@ static void soften_by(struct pass *w, const struct bent_node *b, double v_mm_s)
 	pass_soften_segs(w, b->before, b->behind, &left);
 }
 
-/* By columns that bend at the same place of the path.  @left: what the last one
- * leaves.  Return: how many there are from @k on. */
-static size_t leave_of_way(struct pass *w, const struct bent_way *k, size_t n,
-			   const float *v2, struct leave *ret)
+/* How many of the first of @n begin at the same place; and where the last of
+ * them ends. */
+static size_t of_place(const struct bent_way *k, size_t n, uint32_t *ret_behind)
 {
-	float most = 0;
 	size_t m;
 
-	for (uint32_t i = k->before; i < k->behind; i++)
-		most = v2[i] > most ? v2[i] : most;
-	*ret = (struct leave) { INFINITY, INFINITY };
-	for (m = 0; m < n && k[m].before == k->before; m++) {
+	*ret_behind = 0;
+	for (m = 0; m < n && k[m].before == k->before; m++)
+		if (k[m].behind > *ret_behind)
+			*ret_behind = k[m].behind;
+	return m;
+}
+
+static struct leave leave_of(const struct pass *w, const struct bent_way *k,
+			     size_t n, double v_mm_s)
+{
+	struct leave ret = { INFINITY, INFINITY };
+
+	for (size_t m = 0; m < n; m++) {
 		const struct bent_node b = pass_way_node(&k[m]);
 		struct leave left;
 
-		pass_leave(w, &b, sqrt((double)most), &left);
-		ret->a_mm_s2 = smaller(ret->a_mm_s2, left.a_mm_s2);
-		ret->j_mm_s3 = smaller(ret->j_mm_s3, left.j_mm_s3);
+		pass_leave(w, &b, v_mm_s, &left);
+		ret.a_mm_s2 = smaller(ret.a_mm_s2, left.a_mm_s2);
+		ret.j_mm_s3 = smaller(ret.j_mm_s3, left.j_mm_s3);
 	}
-	return m;
+	return ret;
 }
 
 /* By the bends of the path, at the speeds that can be come to. */
 static void soften_ways(struct pass *w, const float *v2)
 {
 	const struct bent_ways *k = &w->bent_ways;
+	size_t n, columns;
 
-	for (size_t n = 0; n < k->n;) {
+	for (n = 0; n < k->n; n += columns) {
 		const struct bent_way *at = &k->at[n];
 		struct leave left;
+		uint32_t behind;
+		float most = 0;
 
-		n += leave_of_way(w, at, k->n - n, v2, &left);
-		pass_soften_segs(w, at->before, at->behind, &left);
+		columns = of_place(at, k->n - n, &behind);
+		for (uint32_t i = at->before; i < behind; i++)
+			most = v2[i] > most ? v2[i] : most;
+		left = leave_of(w, at, columns, sqrt((double)most));
+		pass_soften_segs(w, at->before, behind, &left);
 	}
 }
 
