@@ -259,3 +259,17 @@ def test_sides_between_tight_corners_are_not_as_soft_as_these(tmp_path):
         x, y = x + i + 0.215 * math.sin(a), y + j - 0.215 * math.cos(a)
         text.append(f"G3 X{x:.6f} Y{y:.6f} I{i:.6f} J{j:.6f}")
     assert dry_s(of, "\n".join(text + ["M2", ""])) < 1.9
+
+
+def test_a_corner_behind_a_tight_bend_leaves_some_acceleration(tmp_path):
+    """The chords of the first node behind the corner go round it, and show a bend
+    that takes all that Y has.  No acceleration was left, and the job ended as a
+    fault."""
+    of = machine(tmp_path, {"X": (80, 2369, 13861), "Y": (80, 612, 11429)})
+    ways = [(-0.001, 0.029)]
+    ways += [(0.042 * math.cos(k), 0.042 * math.sin(k))
+             for k in (-0.095 - 0.147 * i for i in range(16))]
+    ways += [(-0.055, 0.020), (-0.053, 0.024), (-0.050, 0.030)]
+    assert dry_s(of, "\n".join(
+        ["G21 G91 F6000"] + [f"G1 X{x:.3f} Y{y:.3f}" for x, y in ways] +
+        ["M2", ""])) < 1
