@@ -215,3 +215,61 @@ def test_an_axis_that_turns_more_and_more_costs_nothing(tmp_path, at):
     dense = {mm: dry_s(of, written(at, mm, 3, 60))
              for mm in (0.02, 0.01, 0.005)}
     assert max(dense.values()) <= GOAL * long, (dense, long)
+
+
+def arcs_of(pieces, mm, decimals):
+    """Arcs without a corner between, each a radius and a sweep; in lines of @mm,
+    None: as arcs."""
+    x = y = a = 0
+    lines = ["G21 G90 F60000"]
+    for r, sweep in pieces:
+        n = max(1, round(r * sweep / mm)) if mm else 1
+        at_x, at_y = x - r * math.sin(a), y + r * math.cos(a)
+        centre = f" I{at_x - x:.6f} J{at_y - y:.6f}" if not mm else ""
+        for i in range(1, n + 1):
+            to = a + sweep * i / n
+            x, y = at_x + r * math.sin(to), at_y - r * math.cos(to)
+            lines.append(f"{'G1' if mm else 'G3'} X{x:.{decimals}f} "
+                         f"Y{y:.{decimals}f}{centre}")
+        a += sweep
+    return "\n".join(lines + ["M2", ""])
+
+
+def test_a_tight_arc_of_short_lines_softens_no_wide_one_beside_it(tmp_path):
+    """What axes that differ allow changes all the way round.  So stands at all
+    of these changes do not pay, but those beside the tight arc do."""
+    of = machine(tmp_path, {"X": (80, 300, 5000), "Y": (50, 500, 10000)})
+    pieces = [(6.8, 2.8), (0.233, 2.5), (8.8, 1.9), (19, 1.1), (11.8, 2.9)]
+    arcs = dry_s(of, arcs_of(pieces, None, 6))
+    dense = {(mm, decimals): dry_s(of, arcs_of(pieces, mm, decimals)) / arcs
+             for mm in (0.05, 0.02, 0.01, 0.005) for decimals in (3, 6)}
+    assert max(dense.values()) <= MOST, dense
+
+
+def test_sides_between_tight_corners_are_not_as_soft_as_these(tmp_path):
+    """Three sides of 15.6 mm, and an arc of 0.215 mm behind each: as one move, 2.6
+    s."""
+    of = machine(tmp_path, {"X": (50, 500, 50000), "Y": (80, 1000, 10000)})
+    text, x, y, a = ["G21 G90 F60000"], 0, 0, 0.3
+    for _ in range(3):
+        x, y = x + 15.6 * math.cos(a), y + 15.6 * math.sin(a)
+        text.append(f"G1 X{x:.6f} Y{y:.6f}")
+        i, j = -0.215 * math.sin(a), 0.215 * math.cos(a)
+        a += 2 * math.pi / 3
+        x, y = x + i + 0.215 * math.sin(a), y + j - 0.215 * math.cos(a)
+        text.append(f"G3 X{x:.6f} Y{y:.6f} I{i:.6f} J{j:.6f}")
+    assert dry_s(of, "\n".join(text + ["M2", ""])) < 1.9
+
+
+def test_a_corner_behind_a_tight_bend_leaves_some_acceleration(tmp_path):
+    """The chords of the first node behind the corner go round it, and show a bend
+    that takes all that Y has.  No acceleration was left, and the job ended as a
+    fault."""
+    of = machine(tmp_path, {"X": (80, 2369, 13861), "Y": (80, 612, 11429)})
+    ways = [(-0.001, 0.029)]
+    ways += [(0.042 * math.cos(k), 0.042 * math.sin(k))
+             for k in (-0.095 - 0.147 * i for i in range(16))]
+    ways += [(-0.055, 0.020), (-0.053, 0.024), (-0.050, 0.030)]
+    assert dry_s(of, "\n".join(
+        ["G21 G91 F6000"] + [f"G1 X{x:.3f} Y{y:.3f}" for x, y in ways] +
+        ["M2", ""])) < 1

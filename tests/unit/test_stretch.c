@@ -189,21 +189,39 @@ static uint32_t stands_of(const struct made *m)
 	return n;
 }
 
-/* A stand in front of each of them would take longer. */
-static void what_is_soft_again_and_again_is_one_move(void **st)
+/* C turns by @deg on each second line, which is softer. */
+static struct made soft_again_and_again(double deg)
 {
 	struct interp_build *b = begin_plain();
 	double x = 0, c = 0;
-	struct made m;
 
-	(void)st;
 	for (int i = 0; i < 300; i++) {
 		to(b, x += 0.05, c);
-		to(b, x += 0.01, c += 0.2);
+		to(b, x += 0.01, c += deg);
 	}
-	m = finish(b);
+	return finish(b);
+}
+
+/* A stand in front of each of them would take longer. */
+static void what_is_soft_again_and_again_is_one_move(void **st)
+{
+	struct made m = soft_again_and_again(0.02);
+
+	(void)st;
 	assert_int_equal(stands_of(&m), 0);
 	unmake(&m);
+}
+
+/* The nodes between are slow: as one move, that sets off from each of them as
+ * softly, it takes 30 s. */
+static void between_slow_nodes_it_stands_where_that_is_quicker(void **st)
+{
+	double s[2];
+
+	(void)st;
+	walk(soft_again_and_again(0.2), s);
+	assert_true(s[0] < 20);
+	assert_true(s[1] < 20);
 }
 
 /* -- Tight arcs ----------------------------------------------------------- */
@@ -292,6 +310,7 @@ int main(void)
 		cmocka_unit_test(nearer_and_nearer_to_a_pole_it_comes_past),
 		cmocka_unit_test(a_turn_alone_is_not_as_soft_as_a_line_beside_it),
 		cmocka_unit_test(what_is_soft_again_and_again_is_one_move),
+		cmocka_unit_test(between_slow_nodes_it_stands_where_that_is_quicker),
 		cmocka_unit_test(a_circle_of_little_jerk_is_as_fast_as_its_bend),
 		cmocka_unit_test(between_tight_arcs_a_line_is_not_as_soft_as_they),
 	};

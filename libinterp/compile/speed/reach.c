@@ -83,6 +83,15 @@ static size_t of_place(const struct bent_way *k, size_t n, uint32_t *ret_behind)
 	return m;
 }
 
+/* A node may be faster than its bend as an arc, if it was looked at once more
+ * beside a corner.  An arc leaves something for going along it at any speed. */
+static double as_arc_mm_s(const struct pass *w, const struct bent_way *k,
+			  double v_mm_s)
+{
+	return smaller(v_mm_s, sqrt(INTERP_BEND_ACROSS * w->a_mm_s2[k->column] /
+				    (double)k->bend));
+}
+
 static struct leave leave_of(const struct pass *w, const struct bent_way *k,
 			     size_t n, double v_mm_s)
 {
@@ -92,7 +101,7 @@ static struct leave leave_of(const struct pass *w, const struct bent_way *k,
 		const struct bent_node b = pass_way_node(&k[m]);
 		struct leave left;
 
-		pass_leave(w, &b, v_mm_s, &left);
+		pass_leave(w, &b, as_arc_mm_s(w, &k[m], v_mm_s), &left);
 		ret.a_mm_s2 = smaller(ret.a_mm_s2, left.a_mm_s2);
 		ret.j_mm_s3 = smaller(ret.j_mm_s3, left.j_mm_s3);
 	}

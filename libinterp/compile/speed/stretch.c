@@ -36,6 +36,7 @@ struct stretch {
 struct stretches {
 	struct interp_seg *segs;
 	double a_mm_s2, j_mm_s3;	/* the most of all segments */
+	double a_least, j_least;	/* and the least */
 };
 
 /* A segment with no more than one of these is of a higher class. */
@@ -53,6 +54,15 @@ static struct border border_of(const struct stretches *w, int c)
 	};
 }
 
+/* Is any segment above class @c? */
+static bool is_any(const struct stretches *w, int c)
+{
+	const struct border k = border_of(w, c);
+
+	return w->a_least <= (double)k.a_mm_s2 ||
+	       w->j_least <= (double)k.j_mm_s3;
+}
+
 static inline bool is_above(const struct border *k, const struct interp_seg *s)
 {
 	return s->a_mm_s2 <= k->a_mm_s2 || s->j_mm_s3 <= k->j_mm_s3;
@@ -63,6 +73,23 @@ static struct stretch none(uint32_t at)
 	return (struct stretch) { at, at, 0, 0, INFINITY, INFINITY };
 }
 
+/*
+ * About as fast as segment @s is passed.  One that is long speeds up between
+ * slow nodes; short lines that go on bending are no faster than these.
+ */
+static double cruise_mm_s(const struct interp_seg *s)
+{
+	const float node = s->node_mm_s > s[-1].node_mm_s ?
+			   s->node_mm_s : s[-1].node_mm_s;
+	const float most = s->feed_max_mm_s;
+
+	if (node >= most)
+		return (double)most;
+	return smaller((double)most,
+		       sqrt((double)(node * node + s->a_mm_s2 *
+				     (float)s->length_mm)));
+}
+
 /* Actions have no length. */
 static void append(struct stretch *t, const struct interp_seg *s)
 {
@@ -70,7 +97,7 @@ static void append(struct stretch *t, const struct interp_seg *s)
 	if (s->kind >= INTERP_BEGIN)
 		return;
 	t->mm += s->length_mm;
-	t->cruise_s += s->length_mm / (double)s->feed_max_mm_s;
+	t->cruise_s += s->length_mm / cruise_mm_s(s);
 	t->a_mm_s2 = smaller(t->a_mm_s2, (double)s->a_mm_s2);
 	t->j_mm_s3 = smaller(t->j_mm_s3, (double)s->j_mm_s3);
 }
@@ -115,6 +142,18 @@ static void set_stand(struct stretches *w, uint32_t i, bool stands)
 
 	*flags = (uint8_t)(stands ? *flags | INTERP_SEG_STAND :
 				    *flags & ~INTERP_SEG_STAND);
+}
+
+/* Out of [@from, @to).  Return: were there any? */
+static bool take_stands(struct stretches *w, uint32_t from, uint32_t to)
+{
+	bool were = false;
+
+	for (uint32_t i = from; i + 1 < to; i++) {
+		were |= w->segs[i].flags & INTERP_SEG_STAND;
+		set_stand(w, i, false);
+	}
+	return were;
 }
 
 /* From @from on, as long as the class is @c, or as long as it is above it. */
@@ -217,8 +256,7 @@ static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
 	one = one_move_s(w, from, to, c, &all);
 	if (sum < WORTH * one)
 		return sum;
-	for (uint32_t i = from; i + 1 < to; i++)
-		set_stand(w, i, false);
+	take_stands(w, from, to);
 	return one;
 }
 
@@ -232,9 +270,10 @@ static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
  * that it passes from a class to another one.  To know this takes one look at
  * each segment, and for most programs it is the answer.
  */
-static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to)
+static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to,
+		    int c)
 {
-	const struct border k = border_of(w, 0);
+	const struct border k = border_of(w, c);
 	struct stretch all = none(from);
 	double most_mm_s = 0, ramps = 1;
 	bool was = false;
@@ -253,10 +292,30 @@ static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to)
 				       ramp_s(&all, most_mm_s));
 }
 
+/*
+ * Where the axes that move change all the way, as round an arc of short lines,
+ * so does the class, and to stand at each change takes too long.  A softer way
+ * may lie there all the same.  So what is hard for one class may be all of the
+ * softer ones, too.
+ */
 static void divide_all(struct stretches *w, uint32_t from, uint32_t to)
 {
-	if (may_pay(w, from, to))
-		divide(w, from, to, 0);
+	double least_s = INFINITY;
+	int best = CLASSES_MAX;
+
+	for (int c = 0; c < CLASSES_MAX && is_any(w, c); c++) {
+		double s;
+
+		if (!may_pay(w, from, to, c))
+			continue;
+		s = divide(w, from, to, c);
+		if (take_stands(w, from, to) && s < least_s) {
+			least_s = s;
+			best = c;
+		}
+	}
+	if (best < CLASSES_MAX)
+		divide(w, from, to, best);
 }
 
 /* Up to the next node where the length passes to other axes. */
@@ -307,7 +366,9 @@ static void divide_parts(struct stretches *w, uint32_t end)
 void pass_stretches(struct pass *pass)
 {
 	const struct pass_soft *k = &pass->soft;
-	struct stretches w = { pass->segs, k->a_most, k->j_most };
+	struct stretches w = {
+		pass->segs, k->a_most, k->j_most, k->a_least, k->j_least
+	};
 
 	if (pass->parts)
 		divide_parts(&w, pass->p->head->nsegs - 1);
