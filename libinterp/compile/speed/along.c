@@ -9,25 +9,9 @@
  */
 #include "speed/pass.h"
 
-#include <stdlib.h>
+#include "grow.h"
+
 #include <string.h>
-
-#define ROOM	1024
-
-static bool make_room(struct bent_ways *k)
-{
-	const size_t room = k->room ? 2 * k->room : ROOM;
-	struct bent_way *at;
-
-	if (k->n < k->room)
-		return true;
-	at = realloc(k->at, room * sizeof(*at));
-	if (!at)
-		return false;
-	k->at = at;
-	k->room = room;
-	return true;
-}
 
 /* Does it leave less for going along it? */
 static bool takes(const struct pass *w, const struct bent *is, uint32_t column,
@@ -51,7 +35,8 @@ void pass_note_way(struct pass *w, uint32_t before, uint32_t behind,
 	for (uint32_t j = 0; j < w->n; j++) {
 		if (!(is[j].bend > 0) || !takes(w, &is[j], j, v_mm_s))
 			continue;
-		if (!make_room(k)) {
+		if (k->n == k->room &&
+		    grow_array(&k->at, &k->room, sizeof(*k->at)) < 0) {
 			k->lost = true;
 			return;
 		}

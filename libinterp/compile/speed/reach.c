@@ -9,10 +9,10 @@
  */
 #include "speed/pass.h"
 
+#include "grow.h"
+
 #include <math.h>
 #include <stdlib.h>
-
-#define ROOM	1024
 
 static bool moves(const struct interp_seg *s)
 {
@@ -108,7 +108,8 @@ static struct leave leave_of(const struct pass *w, const struct bent_way *k,
 	return ret;
 }
 
-/* By the bends of the path, at the speeds that can be come to. */
+/* By the bends of the path, at the speeds that can be come to; @v2 as reach()
+ * has them. */
 static void soften_ways(struct pass *w, const float *v2)
 {
 	const struct bent_ways *k = &w->bent_ways;
@@ -121,37 +122,29 @@ static void soften_ways(struct pass *w, const float *v2)
 		float most = 0;
 
 		columns = of_place(at, k->n - n, &behind);
-		for (uint32_t i = at->before; i < behind; i++)
-			most = v2[i] > most ? v2[i] : most;
+		for (uint32_t i = at->before; i < behind; i++) {
+			const float over = over_mm_s(w, i);
+			const float v = v2 ? v2[i] : over * over;
+
+			most = v > most ? v : most;
+		}
 		left = leave_of(w, at, columns, sqrt((double)most));
 		pass_soften_segs(w, at->before, behind, &left);
 	}
 }
 
-static bool make_room(struct bent_nodes *k)
-{
-	const size_t room = k->room ? 2 * k->room : ROOM;
-	struct bent_node *at;
-
-	if (k->n < k->room)
-		return true;
-	at = realloc(k->at, room * sizeof(*at));
-	if (!at)
-		return false;
-	k->at = at;
-	k->room = room;
-	return true;
-}
-
 /* Without memory, its speed is what its segments allow. */
 void pass_bent_node(struct pass *w, const struct bent_node *b)
 {
-	if (make_room(&w->bent_nodes)) {
-		w->bent_nodes.at[w->bent_nodes.n++] = *b;
+	struct bent_nodes *k = &w->bent_nodes;
+
+	if (k->n == k->room &&
+	    grow_array(&k->at, &k->room, sizeof(*k->at)) < 0) {
+		k->lost = true;
+		soften_by(w, b, (double)over_mm_s(w, b->before));
 		return;
 	}
-	w->bent_nodes.lost = true;
-	soften_by(w, b, (double)over_mm_s(w, b->before));
+	k->at[k->n++] = *b;
 }
 
 void pass_forget(struct pass *w)
@@ -208,8 +201,7 @@ void pass_soften(struct pass *w)
 		soften_by(w, &k->at[n], v2 ? sqrt((double)v2[at]) :
 					     (double)over_mm_s(w, at));
 	}
-	if (v2)
-		soften_ways(w, v2);
+	soften_ways(w, v2);
 	free(v2);
 	pass_forget(w);
 }
