@@ -123,12 +123,11 @@ static void soften_ways(struct pass *w, const float *v2)
 
 		columns = of_place(at, k->n - n, &behind);
 		for (uint32_t i = at->before; i < behind; i++) {
-			const float over = over_mm_s(w, i);
-			const float v = v2 ? v2[i] : over * over;
+			const float v = v2 ? sqrtf(v2[i]) : over_mm_s(w, i);
 
 			most = v > most ? v : most;
 		}
-		left = leave_of(w, at, columns, sqrt((double)most));
+		left = leave_of(w, at, columns, (double)most);
 		pass_soften_segs(w, at->before, behind, &left);
 	}
 }
