@@ -248,8 +248,10 @@ static int draw(struct recording *r)
 
 static int record(const struct ctl *c, struct recording *r)
 {
+	const char *folder = c->arg ? strrchr(c->arg, '/') : NULL;
 	const struct plot_options o = {
-		.program = "edmctl", .output = c->plot, .title = c->arg,
+		.program = "edmctl", .output = c->plot,
+		.title = folder ? folder + 1 : c->arg,
 		.state_name = state_name,
 	};
 	int err = open_csv(c, r);
