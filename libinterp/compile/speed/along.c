@@ -167,7 +167,8 @@ double pass_arch(struct pass *w, uint32_t i, uint32_t along, double most_mm_s)
 	weakest = pass_weakest(w, moves);
 	v = pass_arc_mm_s(&weakest, sqrt(sum));
 	pass_note_way(w, i - 1, i, is, smaller(v, most_mm_s));
-	pass_way_begin(w, i, sqrt(sum), 0, most_mm_s);
-	w->gate.way.v_mm_s = v;
+	pass_way_begin(w, i, &(struct way_on) {
+		.bend = sqrt(sum), .most_mm_s = most_mm_s, .v_mm_s = v,
+	});
 	return v;
 }

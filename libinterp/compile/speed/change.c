@@ -366,35 +366,36 @@ static double longer(const struct pass *w)
 static void note_way(struct pass *w, uint32_t i, const struct asked *asked,
 		     uint32_t wide)
 {
+	const uint32_t from = PASS_CHANGE_FIRST - is_tight(w);
 	const struct changing *near = &w->changing[PASS_CHANGE_FIRST];
 	const double by = longer(w);
 	struct bent is[INTERP_NAXES] = { 0 };
-	double sum = 0;
+	double sum = 0, arc_mm_s = INFINITY;
 
 	w->gate.v_mm_s *= by;
-
+	for (uint32_t at = from; at <= wide; at++)
+		arc_mm_s = smaller(arc_mm_s, w->changing[at].arc_mm_s);
 	for (uint32_t j = 0; j < w->n; j++) {
 		if (!(asked->along >> j & 1))
 			continue;
-		is[j].rate = near->bent[j].rate;
-		for (uint32_t at = PASS_CHANGE_FIRST; at <= wide; at++) {
-			const struct bent *b = &w->changing[at].bent[j];
-
-			is[j].bend = larger(is[j].bend, b->bend);
-			is[j].change = larger(is[j].change, b->change);
-		}
-		if (is_tight(w))
-			is[j].bend = larger(is[j].bend, near[-1].bent[j].bend);
+		for (uint32_t at = from; at <= wide; at++)
+			is[j].bend = larger(is[j].bend,
+					    w->changing[at].bent[j].bend);
+		for (uint32_t at = PASS_CHANGE_FIRST; at <= wide; at++)
+			is[j].change = larger(is[j].change,
+					      w->changing[at].bent[j].change);
 		sum += is[j].bend * is[j].bend;
-		is[j].rate /= by;
+		is[j].rate = near->bent[j].rate / by;
 		is[j].bend /= by * by;
 		is[j].change /= by * by * by;
 	}
 	pass_note_way(w, i - 1, w->gate.next - 1, is,
 		      smaller(asked->most_mm_s, w->gate.v_mm_s));
 	sum = sqrt(sum);
-	pass_way_begin(w, i, sum, larger(near->bend_most - sum, 0),
-		       asked->most_mm_s);
+	pass_way_begin(w, i, &(struct way_on) {
+		.bend = sum, .off = larger(near->bend_most - sum, 0),
+		.most_mm_s = asked->most_mm_s, .v_mm_s = arc_mm_s * by,
+	});
 }
 
 double pass_change(struct pass *w, uint32_t i, uint32_t along,

@@ -178,7 +178,7 @@ struct changing {
 struct way_on {
 	double to_mm;			/* -INFINITY: there is none */
 	double same_mm;			/* so far it is noted as it is */
-	double bend;			/* in a mm */
+	double bend, off;		/* in a mm */
 	double bend2[2];		/* squared, a line shows so much of it:
 					 * the least and the most */
 	double most_mm_s;		/* what was asked for */
@@ -413,18 +413,20 @@ void pass_bent_node(struct pass *w, const struct bent_node *b);
 void pass_note_way(struct pass *w, uint32_t before, uint32_t behind,
 		   const struct bent *is, double v_mm_s);
 
-/** pass_way_begin() - from node @i on the path bends by @bend, as is noted; of
- *  which a rounding may hide @off. */
-static inline void pass_way_begin(struct pass *w, uint32_t i, double bend,
-				  double off, double most_mm_s)
+/** pass_way_begin() - from node @i on the path bends as is noted; @k says by
+ *  how much, of which a rounding may hide @k->off, and the speeds. */
+static inline void pass_way_begin(struct pass *w, uint32_t i,
+				  const struct way_on *k)
 {
-	const double at = w->segs[i].s_mm, most = bend + off;
-	const double least = larger(bend / 2 - off, 0);
+	const double at = w->segs[i].s_mm, most = k->bend + k->off;
+	const double least = larger(k->bend / 2 - k->off, 0);
+	struct way_on *way = &w->gate.way;
 
-	w->gate.way = (struct way_on) {
-		at + PASS_SAME_BEND / bend, at + PASS_SAME_WAY / bend, bend,
-		{ least * least, most * most }, most_mm_s, w->gate.v_mm_s
-	};
+	*way = *k;
+	way->to_mm = k->bend > 0 ? at + PASS_SAME_BEND / k->bend : -INFINITY;
+	way->same_mm = at + PASS_SAME_WAY / k->bend;
+	way->bend2[0] = least * least;
+	way->bend2[1] = most * most;
 }
 
 /** pass_way_on() - note at node @i that the bend is as before, between lines in
