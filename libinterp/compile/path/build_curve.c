@@ -3,13 +3,13 @@
  * build_curve.c - from a NURBS to segments
  *
  * The curve is looked at in many places, span by span, and cut into pieces: at
- * a cusp, where the direction turns back; at a knot that may be a corner; and
- * where the feed that it allows has changed by more than a half since the piece
- * began.  A piece gets its table of stops, and so many places that no axis
- * jumps.  Then every place is tested, also against the travel, and the number
- * of places is increased until all are right.  The cuts depend only on the
- * limits of the axes, not on the period.  So the lattice points do not depend
- * on the period either.
+ * a cusp, where the direction turns back; at a knot that may be a corner, or
+ * where the bend may make a step; and where the feed that it allows has changed
+ * by more than a half since the piece began.  A piece gets its table of stops,
+ * and so many places that no axis jumps.  Then every place is tested, also
+ * against the travel, and the number of places is increased until all are
+ * right.  The cuts depend only on the limits of the axes, not on the period.
+ * So the lattice points do not depend on the period either.
  */
 #include "curve/span.h"
 #include "path/build_arc.h"
@@ -279,8 +279,8 @@ static int along_look(struct curve_plan *p, double last, double u)
 	return err == 0 ? piece_extend(p, last, u) : err;
 }
 
-/* May the curve have a corner at @u? */
-static bool corner_at(const struct interp_nurbs *c, double u)
+/* May the curve have a corner at @u, or its bend make a step? */
+static bool node_at(const struct interp_nurbs *c, double u)
 {
 	uint32_t n = 0;
 
@@ -289,7 +289,7 @@ static bool corner_at(const struct interp_nurbs *c, double u)
 		if (i == 0)
 			break;
 	}
-	return n >= c->degree;
+	return n + 1 >= c->degree;
 }
 
 static int along(struct curve_plan *p)
@@ -313,7 +313,7 @@ static int along(struct curve_plan *p)
 			err = along_look(p, last, u);
 			last = u;
 		}
-		if (err == 0 && (last >= end || corner_at(&e->c, last)))
+		if (err == 0 && (last >= end || node_at(&e->c, last)))
 			err = piece_end(p, last);
 	}
 	return err;
