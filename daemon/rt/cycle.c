@@ -132,6 +132,14 @@ static void stand_held(struct cycle *c)
 	mover_set(&c->mover, 0);
 }
 
+/* The last bit of a way to a stand is cut.  What is left of its speed must not
+ * carry the limits of that move over the action. */
+static void stand_before(struct cycle *c)
+{
+	if (c->mover.kind != MOVER_NO_PLAN)
+		mover_set(&c->mover, 0);
+}
+
 /* A held job does no action; it stands before the action.  A way back that was
  * told while it came here begins here. */
 static void meet_action(struct cycle *c)
@@ -141,6 +149,7 @@ static void meet_action(struct cycle *c)
 		c->hold.moving = c->hold.moving && c->hold.to_mm < place_mm(c);
 		return;
 	}
+	stand_before(c);
 	switch (walk_action(c)) {
 	case ACTION_WAIT:
 		cycle_happen(c, EVENT_FREE);

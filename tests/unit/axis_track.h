@@ -106,19 +106,24 @@ static inline void random_arc(struct interp_build *b, uint64_t *s)
 	assert_int_equal(interp_build_arc(b, end, &a, &w, &d), 0);
 }
 
-/* A NURBS of X, Y, C and now and then Z: from here, gently. */
-static inline void random_nurbs(struct interp_build *b, uint64_t *s)
+/* A NURBS of X, Y, Z and C: from here, gently.  Of degree 2 its bend makes a
+ * step at each knot. */
+static inline void random_nurbs(struct interp_build *b, uint64_t *s,
+				uint32_t degree)
 {
 	enum { N = 5, COLUMNS = 4 };
 	static const uint8_t axis[COLUMNS] = { INTERP_X, INTERP_Y, INTERP_Z,
 					       INTERP_C };
-	static const double knots[N + 4] = { 0, 0, 0, 0, 0.5, 1, 1, 1, 1 };
+	static const double knots[][N + 4] = {
+		[2] = { 0, 0, 0, 0.3, 0.7, 1, 1, 1 },
+		[3] = { 0, 0, 0, 0, 0.5, 1, 1, 1, 1 },
+	};
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 60 };
 	const double *here = interp_build_here(b);
 	double points[N * (COLUMNS + 1)];
 	struct interp_build_curve c = { .nurbs = {
-		.degree = 3, .npoints = N, .naxes = COLUMNS, .counted = 3,
-		.knots = knots,
+		.degree = degree, .npoints = N, .naxes = COLUMNS, .counted = 3,
+		.knots = knots[degree],
 		.points = points,
 	} };
 	struct interp_diag d;
@@ -145,7 +150,7 @@ static inline struct made random_path(uint64_t *s)
 		if (rnd(s) % 4 == 0)
 			random_arc(b, s);
 		else if (rnd(s) % 6 == 0)
-			random_nurbs(b, s);
+			random_nurbs(b, s, 3);
 		else if (rnd(s) % 8 == 0)
 			random_tiny(b, s);
 		else if (rnd(s) % 12 == 0)

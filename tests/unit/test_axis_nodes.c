@@ -117,6 +117,8 @@ static struct made random_nodes(uint64_t *s)
 			random_wave(b, s);
 		else if (rnd(s) % 6 == 0)
 			random_slot(b, s);
+		else if (rnd(s) % 6 == 0)
+			random_nurbs(b, s, 2);
 		else
 			random_turns(b, s);
 	}

@@ -11,6 +11,9 @@
 #include "random_curve.h"
 #include "seed.h"
 
+#include "interp/at.h"
+#include "interp/limits.h"
+
 #include <errno.h>
 
 #define ROUNDS	SEED_ROUNDS(32)
@@ -282,6 +285,63 @@ static void pieces_tell_which_way_they_go(void **state)
 	}
 }
 
+/* How the direction of column @j changes in a mm, at one end of segment @i. */
+static double bend_of(const struct made *m, uint32_t i, bool at_end, uint32_t j)
+{
+	const double mm = m->p.segs[i].length_mm, h = 1e-4 * mm;
+	struct interp_at_curve last = { .open = false };
+	const double from = at_end ? mm - h : 0;
+	struct interp_contour_point a, b;
+
+	assert_true(interp_program_at(&m->p, i, from, &last, &a));
+	assert_true(interp_program_at(&m->p, i, from + h, &last, &b));
+	return (b.per_u[j] - a.per_u[j]) / h;
+}
+
+/* At each knot of a curve of degree 2 acceleration makes a step.  An axis
+ * follows it with its jerk within corner_um, as from a line onto an arc. */
+static void where_the_bend_makes_a_step_is_a_node(void **state)
+{
+	const double knots[] = { 0, 0, 0, 0.3, 0.5, 1, 1, 1 };
+	const double j = help_machine.axis[0].j_max_mm_s3;
+	const double step = cbrt(24 * INTERP_CORNER_MM * j * j);
+	uint64_t s = seed;
+	double most = 0;
+
+	(void)state;
+	for (int n = 0; n < ROUNDS; n++) {
+		double points[5 * 3];
+		const struct interp_nurbs c = { 2, 2, 5, 2, 0, knots, points };
+		uint32_t nodes = 0;
+		struct made m;
+
+		for (int i = 0; i < 5; i++) {
+			points[3 * i] = 10 * i;
+			points[3 * i + 1] = uniform(&s, 4, 20) * (i % 2);
+			points[3 * i + 2] = 1;
+		}
+		m = make(&c, 0, INTERP_SIMULTANEOUS);
+		for (uint32_t i = 1; i + 2 < m.p.head->nsegs; i++) {
+			const double v = fmin(fmin(m.p.segs[i].feed_max_mm_s,
+						   m.p.segs[i].node_mm_s),
+					      m.p.segs[i + 1].feed_max_mm_s);
+
+			for (uint32_t k = 0; k < 2; k++) {
+				const double d = bend_of(&m, i, true, k) -
+						 bend_of(&m, i + 1, false, k);
+
+				/* Beside a cusp nobody sees it. */
+				if (fabs(d) < 1)
+					most = fmax(most, v * v * fabs(d));
+			}
+			nodes++;
+		}
+		assert_true(nodes >= 2);
+		unmake(&m);
+	}
+	assert_true(most < 1.001 * step && most > 0.5 * step);
+}
+
 /* Control points that are one, five of them: the curve stands for a while. */
 static void a_curve_may_stand_on_the_way(void **state)
 {
@@ -393,6 +453,7 @@ int main(void)
 		cmocka_unit_test(feed_is_lowest_where_the_curve_bends_most),
 		cmocka_unit_test(a_cusp_is_a_node),
 		cmocka_unit_test(pieces_tell_which_way_they_go),
+		cmocka_unit_test(where_the_bend_makes_a_step_is_a_node),
 		cmocka_unit_test(a_curve_may_stand_on_the_way),
 		cmocka_unit_test(what_cannot_be_walked_is_refused),
 		cmocka_unit_test(damage_never_makes_an_axis_leap),

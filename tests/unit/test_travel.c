@@ -39,7 +39,8 @@ static void load_random(struct rig *r, uint64_t *s, bool stops)
 	for (int i = 0; i < SEGS; i++) {
 		random_line(b, s);
 		if (stops && rnd(s) % 5 == 0)
-			action(b, INTERP_DWELL, 3);
+			action(b, rnd(s) % 2 ? INTERP_DWELL :
+					       INTERP_OPTIONAL_STOP, 3);
 	}
 	rig_load(r, b, &k);
 	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
@@ -50,8 +51,12 @@ static void step_smoothly(struct rig *r)
 {
 	const struct cycle_config *k = &r->c.config;
 	const double v = r->c.mover.v_mm_s, a = r->c.mover.a_mm_s2;
+	const uint32_t done = r->c.job.action_done;
 
 	step(r, OPEN_V);
+	/* From there another move begins, with limits of its own. */
+	assert_true(r->c.job.action_done == done ||
+		    mover_is_standing(&r->c.mover));
 	assert_true(fabs(r->c.mover.v_mm_s - v) <=
 		    k->travel_a_mm_s2 * PERIOD_S * (1 + 1e-9));
 	/* A stop less than 1e-9 mm ahead is met, a little early. */

@@ -3,13 +3,13 @@
  * build_curve.c - from a NURBS to segments
  *
  * The curve is looked at in many places, span by span, and cut into pieces: at
- * a cusp, where the direction turns back; at a knot that may be a corner; and
- * where the feed that it allows has changed by more than a half since the piece
- * began.  A piece gets its table of stops, and so many places that no axis
- * jumps.  Then every place is tested, also against the travel, and the number
- * of places is increased until all are right.  The cuts depend only on the
- * limits of the axes, not on the period.  So the lattice points do not depend
- * on the period either.
+ * a cusp, where the direction turns back; at a knot that may be a corner, or
+ * where the bend may make a step; and where the feed that it allows has changed
+ * by more than a half since the piece began.  A piece gets its table of stops,
+ * and so many places that no axis jumps.  Then every place is tested, also
+ * against the travel, and the number of places is increased until all are
+ * right.  The cuts depend only on the limits of the axes, not on the period.
+ * So the lattice points do not depend on the period either.
  */
 #include "curve/span.h"
 #include "path/build_arc.h"
@@ -24,6 +24,7 @@
 #include <string.h>
 
 #define LOOKS		64		/* in a span */
+#define BESIDE_KNOT	1e-9		/* of a span */
 #define FEED_RATIO	1.5		/* fastest to slowest feed in a piece */
 #define CUSP_HALVINGS	60
 #define STOP_PULSES	0.02		/* error of a stop's place, of the axis
@@ -206,27 +207,39 @@ static void piece_begin(struct curve_plan *p, double u)
 	p->least_mm_s = p->most_mm_s = p->last.mm_s;
 }
 
+/* Would its feeds differ too much, if this was one? */
+static bool differs(const struct curve_plan *p, double mm_s)
+{
+	return fmax(p->most_mm_s, mm_s) > FEED_RATIO *
+					  fmin(p->least_mm_s, mm_s);
+}
+
+static void piece_take(struct curve_plan *p, const struct curve_look *here)
+{
+	p->least_mm_s = fmin(p->least_mm_s, here->mm_s);
+	p->most_mm_s = fmax(p->most_mm_s, here->mm_s);
+	p->last = *here;
+}
+
 /* The piece goes on to @u if its feeds stay similar enough.  Otherwise it ends
  * at the place of the last look. */
 static int piece_extend(struct curve_plan *p, double last, double u)
 {
 	const struct curve_seen was = p->seen;
 	const struct curve_look here = build_curve_look(p, u);
-	const double feed = here.mm_s;
+	struct curve_look before;
 	int err = 0;
 
-	if (last > p->from && fmax(p->most_mm_s, feed) >
-			      FEED_RATIO * fmin(p->least_mm_s, feed)) {
+	if (last > p->from && differs(p, here.mm_s)) {
 		p->seen = was;
 		err = piece_add(p, last);
 		piece_begin(p, last);
 		build_curve_look(p, u);
 	}
-	p->least_mm_s = fmin(p->least_mm_s, feed);
-	p->most_mm_s = fmax(p->most_mm_s, feed);
+	before = p->last;
+	piece_take(p, &here);
 	if (err == 0)
-		build_curve_look_between(p, &p->last, &here);
-	p->last = here;
+		build_curve_look_between(p, &before, &here);
 	return err;
 }
 
@@ -236,6 +249,20 @@ static int piece_end(struct curve_plan *p, double u)
 
 	piece_begin(p, u);
 	return err;
+}
+
+/* At the knot @u, where what is behind it may bend otherwise. */
+static int piece_over(struct curve_plan *p, double u)
+{
+	const struct curve_seen was = p->seen;
+	const struct curve_look here = build_curve_look(p, u);
+
+	if (!differs(p, here.mm_s)) {
+		piece_take(p, &here);
+		return 0;
+	}
+	p->seen = was;
+	return piece_end(p, u);
 }
 
 /* -- Along the curve ------------------------------------------------------ */
@@ -279,8 +306,8 @@ static int along_look(struct curve_plan *p, double last, double u)
 	return err == 0 ? piece_extend(p, last, u) : err;
 }
 
-/* May the curve have a corner at @u? */
-static bool corner_at(const struct interp_nurbs *c, double u)
+/* May the curve have a corner at @u, or its bend make a step? */
+static bool node_at(const struct interp_nurbs *c, double u)
 {
 	uint32_t n = 0;
 
@@ -289,7 +316,7 @@ static bool corner_at(const struct interp_nurbs *c, double u)
 		if (i == 0)
 			break;
 	}
-	return n >= c->degree;
+	return n + 1 >= c->degree;
 }
 
 static int along(struct curve_plan *p)
@@ -307,14 +334,18 @@ static int along(struct curve_plan *p)
 		interp_nurbs_at(e, last, 0, &at);
 		to = e->to;
 		for (int i = 1; err == 0 && i <= LOOKS; i++) {
-			const double u = i < LOOKS ? from + (to - from) * i /
-						     LOOKS : to;
+			/* At its end, this span and no other. */
+			const double part = i < LOOKS ? 1.0 * i / LOOKS :
+							1 - BESIDE_KNOT;
+			const double u = from + (to - from) * part;
 
 			err = along_look(p, last, u);
 			last = u;
 		}
-		if (err == 0 && (last >= end || corner_at(&e->c, last)))
-			err = piece_end(p, last);
+		last = to;
+		if (err == 0)
+			err = to >= end || node_at(&e->c, to) ?
+			      piece_end(p, to) : piece_over(p, to);
 	}
 	return err;
 }

@@ -2,9 +2,10 @@
 /*
  * curl.c - how fast a node may be passed at which the bend of the path changes
  *
- * From a line onto an arc that touches it, the acceleration of an axis makes a
- * step.  With its jerk j it takes a time step / j from one to the other, and is
- * then off the path by step^3 / (24 j^2): no more than a corner may be.
+ * From a line onto an arc that touches it, and at a knot of a curve of second
+ * degree, the acceleration of an axis makes a step.  With its jerk j it takes a
+ * time step / j from one to the other, and is then off the path by
+ * step^3 / (24 j^2): no more than a corner may be.
  */
 #include "speed/pass.h"
 
@@ -25,13 +26,28 @@ static void bend(const struct pass *w, const struct interp_arc *arc,
 	ret[b] += turn * h->rate[a];
 }
 
-/* Add @times the bend of segment @i where its direction is @h. */
+/* In a cusp a curve bends within less than anybody sees. */
+static void bend_of_curve(const struct pass *w, const struct interp_seg *s,
+			  double times, double ret[])
+{
+	double bend[INTERP_NAXES];
+
+	interp_program_curve_bend(w->p, s, times < 0, bend);
+	for (uint32_t j = 0; j < w->n; j++)
+		ret[j] += times * smaller(larger(bend[j], -1 / w->tol[j]),
+					  1 / w->tol[j]);
+}
+
+/* Add @times the bend of segment @i where its direction is @h: -1 at its end, 1
+ * where it begins. */
 static void bends(const struct pass *w, uint32_t i, const struct heading *h,
 		  double times, double ret[])
 {
 	const struct interp_seg *s = &w->segs[i];
 	const double per_mm = times / s->length_mm;
 
+	if (s->kind == INTERP_CURVE)
+		bend_of_curve(w, s, times, ret);
 	if (s->kind == INTERP_ARC)
 		bend(w, &w->p->arcs[s->arg], per_mm, h, ret);
 	for (int k = 0; k < 2 && s->kind == INTERP_PAIR; k++)

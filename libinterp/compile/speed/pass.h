@@ -563,7 +563,7 @@ double pass_change(struct pass *w, uint32_t i, uint32_t along,
 void pass_change_anew(struct pass *w, uint32_t i);
 
 /** pass_curl() - the greatest speed over the same node by how the bend of arcs
- *  changes there. */
+ *  and curves changes there. */
 double pass_curl(const struct pass *w, uint32_t last, uint32_t i,
 		 const struct heading *a, const struct heading *b);
 

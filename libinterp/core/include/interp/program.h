@@ -401,6 +401,14 @@ bool interp_program_curve_rate(const struct interp_program *p,
 			       double ret[INTERP_NAXES]);
 
 /**
+ * interp_program_curve_bend() - the same of its bend: how that direction
+ * changes per mm of path.
+ */
+bool interp_program_curve_bend(const struct interp_program *p,
+			       const struct interp_seg *seg, bool at_end,
+			       double ret[INTERP_NAXES]);
+
+/**
  * interp_strategy_name() - "simultaneous", ...; NULL if unknown. Any thread.
  */
 const char *interp_strategy_name(enum interp_strategy s);
