@@ -170,12 +170,30 @@ static inline void bend(const struct bends *k, uint32_t j, double ret[BENDS])
 			 k->per_mm[n];
 }
 
+/* Bends to both sides, more than roundings of @tol make? */
+static inline bool to_and_fro(const struct bends *k, const double b[BENDS],
+			      double tol)
+{
+	bool left = false, right = false;
+
+	for (uint32_t n = 0; n < BENDS; n++) {
+		left |= b[n] > tol * k->rounding[n];
+		right |= -b[n] > tol * k->rounding[n];
+	}
+	return left && right;
+}
+
 /*
  * From the bend before the node to that behind it.  What is a change on one
- * side of the node only is a corner beside it.
+ * side of the node only is a corner beside it; but a corner bends to one side
+ * only.
  */
-static inline double change_of(const double b[BENDS])
+static inline double change_of(const struct bends *k, const double b[BENDS],
+			       double tol)
 {
+	if (to_and_fro(k, b, tol))
+		return larger(larger(b[BEFORE], b[AT]), b[BEHIND]) -
+		       smaller(smaller(b[BEFORE], b[AT]), b[BEHIND]);
 	return smaller(fabs(b[BEHIND] - b[BEFORE]),
 		       2 * smaller(fabs(b[AT] - b[BEFORE]),
 				   fabs(b[BEHIND] - b[AT])));
@@ -288,7 +306,8 @@ COLUMNS_INLINE void show_columns(const struct pass *w, struct changing *c,
 		sure.moves |= (uint32_t)(is->rate > 0 || fabs(b[AT]) > 0) << j;
 		add_bend(&k, b, w->tol[j], is->bend, &sure);
 		if (k.mm > 0)
-			show_change(w, j, &k, change_of(b), c);
+			show_change(w, j, &k, change_of(&k, b, w->tol[j]),
+				    c);
 	}
 	/* At an end of the run, wide windows see corners on one side only. */
 	if (k.mm > 0 ||
