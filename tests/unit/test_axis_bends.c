@@ -23,10 +23,15 @@
 /* Of the limits. */
 #define MOST_A		1.05
 #define MOST_J		1.0
+/* Of the speed of waves no longer than two windows. */
+#define MOST_QUICK	1.15
 /* The rates of a rigid body have peaks where the tip goes round a tight bend
  * (docs/gap-servo.md, "Not there yet"). */
 #define MOST_A_BODY	1.4
 #define MOST_J_BODY	1.8
+
+/* A corner and a rounding. */
+#define OFF_MM		(INTERP_CORNER_MM + 0.001)
 
 /* Shorter lines do not tell the share of an axis beside them. */
 #define TINY_MM		(4 * PULSE_MM)
@@ -74,32 +79,45 @@ static struct interp_build *build_begin(void)
 	return interp_build_create(&o);
 }
 
-/* A way that bends to and fro, two waves at a time; now and then B goes along
- * evenly. */
-static struct made sway(uint64_t *s)
+/* Two waves of its direction at a time, rad and rad/mm. */
+struct waves {
+	double high[2], wave[2], first, deg_mm;
+};
+
+/* In lines of @mm. */
+static struct made wavy(const struct waves *k, double mm)
 {
 	const struct interp_build_word w = {
 		.line = 1, .feed_mm_s = 80, .rapid = true,
 	};
 	struct interp_build *b = build_begin();
-	const double mm = pow(10, uniform(s, -2, -0.7));
-	const double high[2] = { uniform(s, 0.3, 1.4), uniform(s, 0, 1) };
-	const double wave[2] = { uniform(s, 0.2, 1.5), uniform(s, 0.2, 2.5) };
-	const double first = uniform(s, 0, 6.28);
-	const double deg_mm = rnd(s) % 3 ? 0 : uniform(s, -1, 1);
 	double end[INTERP_NAXES] = { 0 };
 	struct interp_diag d;
 
 	for (double at = 0; at < 20; at += mm) {
-		const double way = first + high[0] * sin(wave[0] * at) +
-				   high[1] * sin(wave[1] * at);
+		const double way = k->first + k->high[0] * sin(k->wave[0] * at) +
+				   k->high[1] * sin(k->wave[1] * at);
 
 		end[INTERP_X] += mm * cos(way);
 		end[INTERP_Y] += mm * sin(way);
-		end[INTERP_B] += mm * deg_mm;
+		end[INTERP_B] += mm * k->deg_mm;
 		assert_int_equal(interp_build_line(b, end, &w, &d), 0);
 	}
 	return finish(b);
+}
+
+/* A way that bends to and fro; now and then B goes along evenly. */
+static struct made sway(uint64_t *s)
+{
+	const double mm = pow(10, uniform(s, -2, -0.7));
+	const struct waves k = {
+		.high = { uniform(s, 0.3, 1.4), uniform(s, 0, 1) },
+		.wave = { uniform(s, 0.2, 1.5), uniform(s, 0.2, 2.5) },
+		.first = uniform(s, 0, 6.28),
+		.deg_mm = rnd(s) % 3 ? 0 : uniform(s, -1, 1),
+	};
+
+	return wavy(&k, mm);
 }
 
 static struct made of_text(const struct text *t)
@@ -264,6 +282,83 @@ static void ways_that_bend_to_and_fro_keep_the_limits(void **st)
 	try(sway, (struct most) { MOST_A, MOST_J });
 }
 
+/* Over all waves between these places; what the ends are slower by is not of
+ * them. */
+static double mean_mm_s(struct made m, double from_mm, double to_mm)
+{
+	const struct cycle_config k = dry(4000, 2e5);
+	double cycles = 0;
+	struct rig r;
+
+	rig_take(&r, m, &k);
+	tell(&r, CYCLE_START);
+	for (int n = 0; n < CYCLES && r.c.state == STATE_TRAVEL; n++) {
+		step(&r, OPEN_V);
+		cycles += place(&r) >= from_mm && place(&r) < to_mm;
+	}
+	rig_free(&r);
+	return (to_mm - from_mm) / (cycles * PERIOD_S);
+}
+
+/*
+ * Y goes to and fro by @high / @wave.  What does so within half a wave, T, takes
+ * a jerk of 24 / T^3 of that at least, whatever its form is; it may be off by a
+ * corner and a rounding.
+ */
+static double most_mm_s(const struct waves *k)
+{
+	const double y_mm = k->high[0] / k->wave[0] - OFF_MM;
+	const double jerk = axes_machine.axis[INTERP_Y].j_max_mm_s3;
+
+	return y_mm > OFF_MM / 2 ? M_PI / k->wave[0] * cbrt(jerk / (24 * y_mm)) :
+			       INFINITY;
+}
+
+static void try_waves(const struct waves *k, double mm)
+{
+	const double waves_mm = 4 * 2 * M_PI / k->wave[0];
+	const double v = mean_mm_s(wavy(k, mm), 5, 5 + waves_mm) /
+			 most_mm_s(k);
+
+	seen.a = fmax(seen.a, v);
+	if (v > MOST_QUICK)
+		fail_msg("%g rad, %g rad/mm, lines of %g mm: %g",
+			 k->high[0], k->wave[0], mm, v);
+}
+
+static void so_do_ways_that_bend_quickly(void **st)
+{
+	static const struct waves known[] = {
+		{ .high = { 0.032 }, .wave = { 3.14 } },
+		{ .high = { 0.062 }, .wave = { 4.83 } },
+		{ .high = { 0.127 }, .wave = { 7.85 } },
+		{ .high = { 0.16 }, .wave = { 6.28 } },
+	};
+	uint64_t s = seed;
+
+	(void)st;
+	seen.a = 0;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		axes_machine.axis[i] = (struct interp_axis_limits) {
+			PULSE_MM, -1000, 1000, 80, 1000, 20000
+		};
+	axes_machine.present = 0xff;
+	for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++)
+		for (double mm = 0.02; mm < 0.1; mm += 0.015)
+			try_waves(&known[i], mm);
+	for (int i = 0; i < ROUNDS; i++) {
+		const double mm = pow(10, uniform(&s, -2, -1.1));
+		const struct waves k = {
+			.high = { uniform(&s, 0.02, 0.4) },
+			.wave = { uniform(&s, 2.5, 6.3) },
+		};
+
+		set_machine(&s);
+		try_waves(&k, mm);
+	}
+	print_message("most: %.2f of the speed\n", seen.a);
+}
+
 static void arcs_of_a_leaning_tool_keep_the_limits(void **st)
 {
 	(void)st;
@@ -280,6 +375,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(ways_that_bend_to_and_fro_keep_the_limits),
+		cmocka_unit_test(so_do_ways_that_bend_quickly),
 		cmocka_unit_test(arcs_of_a_leaning_tool_keep_the_limits),
 		cmocka_unit_test(bodies_keep_the_limits),
 	};

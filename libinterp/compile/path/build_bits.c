@@ -143,11 +143,8 @@ int build_bits_add(struct interp_build *b, const struct build_way *w,
 	*ret_arg = 0;
 	if (!pulse_strategy(b->o.strategy)->runs || !plan_pairs(&p, &b->o, w))
 		return 0;
-	/* What is planned only to find that bursts are as good is not counted,
-	 * but it may not be longer than what is. */
-	err = build_walk_may(b, ticks, diag);
-	if (err < 0 || !worth_it(&p))
-		return err;
-	err = plan_add(b, &p, ret_arg);
-	return err == 0 && *ret_arg ? build_walk(b, ticks, diag) : err;
+	/* To find that bursts are as good takes as long. */
+	err = build_walk(b, ticks, diag);
+	return err < 0 || b->again.counts || !worth_it(&p) ?
+		       err : plan_add(b, &p, ret_arg);
 }

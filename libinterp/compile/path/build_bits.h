@@ -22,8 +22,8 @@
  *
  * @ret_arg: for interp_seg.arg; 0: the line uses bursts.
  *
- * Return: 0; -ENOMEM; -EINVAL with @diag filled if more than may be walked
- * would be planned; that is said before it is.
+ * Return: 0; or as build_walk(), before it is planned.  A builder that counts
+ * does no more than that.
  */
 int build_bits_add(struct interp_build *b, const struct build_way *w,
 		   uint32_t ticks, uint32_t *ret_arg, struct interp_diag *diag);

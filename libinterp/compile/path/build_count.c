@@ -8,9 +8,12 @@
  * arc and curve no more than it certainly has, from its length.  Reading it
  * takes less than a microsecond a line.
  */
+#include "path/build_bits.h"
 #include "path/build_curve.h"
+#include "path/build_rule.h"
 #include "path/builder.h"
 #include "interp/smaller.h"
+#include "pulse/strategy.h"
 
 #include <errno.h>
 #include <math.h>
@@ -21,6 +24,18 @@
 
 /* Of what is allowed, before the rest is counted. */
 #define WALKED_PART	50
+
+/* One that is too long for a segment is refused where it is built. */
+static int count_planned(struct interp_build *b, const int64_t *to,
+			 struct build_measure *m, struct interp_diag *diag)
+{
+	const struct build_way way = build_way_to(b, to, m);
+	const uint64_t ticks = build_rule_pulses(&way);
+	uint32_t arg;
+
+	return ticks > INTERP_PULSES_MAX ? 0 :
+	       build_bits_add(b, &way, (uint32_t)ticks, &arg, diag);
+}
 
 int build_count_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_word *w,
@@ -36,10 +51,12 @@ int build_count_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	err = build_measure(b, end_mm, to, &m, diag);
 	if (err < 0)
 		return err;
+	if (m.moved && pulse_strategy(b->o.strategy)->runs)
+		err = count_planned(b, to, &m, diag);
 	if (m.moved)
 		build_descend(b, m.moved, end_mm);
 	build_stand_at(b, end_mm, to);
-	return 0;
+	return err;
 }
 
 /* The longest way of an axis between two places, pulses. */

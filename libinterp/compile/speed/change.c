@@ -170,21 +170,40 @@ static inline void bend(const struct bends *k, uint32_t j, double ret[BENDS])
 			 k->per_mm[n];
 }
 
+/* Bends to both sides, more than roundings of @tol make? */
+static inline bool to_and_fro(const struct bends *k, const double b[BENDS],
+			      double tol)
+{
+	bool left = false, right = false;
+
+	for (uint32_t n = 0; n < BENDS; n++) {
+		left |= b[n] > tol * k->rounding[n];
+		right |= -b[n] > tol * k->rounding[n];
+	}
+	return left && right;
+}
+
 /*
  * From the bend before the node to that behind it.  What is a change on one
- * side of the node only is a corner beside it.
+ * side of the node only is a corner beside it; but a corner bends to one side
+ * only.
  */
-static inline double change_of(const double b[BENDS])
+static inline double change_of(const struct bends *k, const double b[BENDS],
+			       double tol)
 {
+	if (to_and_fro(k, b, tol))
+		return larger(larger(b[BEFORE], b[AT]), b[BEHIND]) -
+		       smaller(smaller(b[BEFORE], b[AT]), b[BEHIND]);
 	return smaller(fabs(b[BEHIND] - b[BEFORE]),
 		       2 * smaller(fabs(b[AT] - b[BEFORE]),
 				   fabs(b[BEHIND] - b[AT])));
 }
 
 /* How much of the bend at the node is certain, squared; no more than that; and
- * the same times what it is to both sides. */
+ * the same times what it is to both sides, and may be there. */
 struct sure {
 	double is2, most2, before, behind;
+	double before_most, behind_most;
 	uint32_t moves;			/* the columns that move */
 };
 
@@ -199,20 +218,34 @@ static inline void add_bend(const struct bends *k, const double b[BENDS],
 	ret->most2 += most * most;
 	ret->before += way * b[BEFORE] - d * tol * k->rounding[BEFORE];
 	ret->behind += way * b[BEHIND] - d * tol * k->rounding[BEHIND];
+	ret->before_most += way * b[BEFORE] + d * tol * k->rounding[BEFORE];
+	ret->behind_most += way * b[BEHIND] + d * tol * k->rounding[BEHIND];
 }
 
 /* What of the bend at the node goes on to both sides of it, or, at an end of
  * the run, to the one that there is.  A corner does not. */
-static double goes_on(const struct bends *k, const struct sure *sure)
+static double goes_on(const struct bends *k, double is2, double before,
+		      double behind)
 {
 	double least = INFINITY;
 
 	if (k->per_mm[BEFORE] > 0)
-		least = sure->before;
+		least = before;
 	if (k->per_mm[BEHIND] > 0)
-		least = smaller(least, sure->behind);
-	return least < INFINITY ?
-	       larger(smaller(2 * least / sure->is2, 1), 0) : 0;
+		least = smaller(least, behind);
+	return least < INFINITY ? larger(smaller(2 * least / is2, 1), 0) : 0;
+}
+
+/* No more of the bend goes on than in this window and in all narrower ones it
+ * may: wide ones see two corners as one bend. */
+static void no_more_on(const struct bends *k, const struct sure *sure,
+		       struct changing *c)
+{
+	c->on_most = smaller(c->on_most, c->bend_most);
+	if (sure->is2 > 0)
+		c->on_most = smaller(c->on_most, sqrt(sure->most2) *
+				     goes_on(k, sure->is2, sure->before_most,
+					     sure->behind_most));
 }
 
 /* Does a bend leave less for going along it? */
@@ -235,10 +268,12 @@ static void show_bend(const struct pass *w, const struct bends *k,
 	double share;
 
 	c->bend_most = smaller(c->bend_most, sqrt(sure->most2));
-	if (c->bend_most > CLEAR * is &&
-	    leaves_less(w, &weakest, c->bend_most, c->most_mm_s))
+	no_more_on(k, sure, c);
+	if (c->on_most > CLEAR * is &&
+	    leaves_less(w, &weakest, c->on_most, c->most_mm_s))
 		c->clear = false;
-	share = is > 0 ? smaller(goes_on(k, sure), c->bend_most / is) : 0;
+	share = is > 0 ? smaller(goes_on(k, sure->is2, sure->before,
+					 sure->behind), c->on_most / is) : 0;
 	if (share > 0)
 		c->arc_mm_s = pass_arc_mm_s(&weakest, share * is);
 	c->v_mm_s = smaller(c->v_mm_s, c->arc_mm_s);
@@ -288,7 +323,8 @@ COLUMNS_INLINE void show_columns(const struct pass *w, struct changing *c,
 		sure.moves |= (uint32_t)(is->rate > 0 || fabs(b[AT]) > 0) << j;
 		add_bend(&k, b, w->tol[j], is->bend, &sure);
 		if (k.mm > 0)
-			show_change(w, j, &k, change_of(b), c);
+			show_change(w, j, &k, change_of(&k, b, w->tol[j]),
+				    c);
 	}
 	/* At an end of the run, wide windows see corners on one side only. */
 	if (k.mm > 0 ||
@@ -307,6 +343,7 @@ static void show(const struct pass *w, const struct asked *asked,
 	c->v_mm_s = c->arc_mm_s = INFINITY;
 	c->clear = true;
 	c->bend_most = narrower ? narrower->bend_most : INFINITY;
+	c->on_most = narrower ? narrower->on_most : INFINITY;
 	for (uint32_t j = 0; j < w->n; j++)
 		c->per_mm[j] = narrower ? narrower->per_mm[j] : INFINITY;
 	BY_WAYS(w->n, asked->along, show_columns, w, c);
@@ -384,6 +421,10 @@ static void note_way(struct pass *w, uint32_t i, const struct asked *asked,
 		for (uint32_t at = PASS_CHANGE_FIRST; at <= wide; at++)
 			is[j].change = larger(is[j].change,
 					      w->changing[at].bent[j].change);
+		/* What changes by all of it within the narrowest window is a
+		 * corner beside it. */
+		is[j].change = smaller(is[j].change,
+				       is[j].bend / w->windows[0].mm);
 		sum += is[j].bend * is[j].bend;
 		is[j].rate = near->bent[j].rate / by;
 		is[j].bend /= by * by;

@@ -171,6 +171,7 @@ struct changing {
 	struct bent bent[INTERP_NAXES];
 	double bend_most;		/* of all columns; a rounding hides no
 					 * more */
+	double on_most;			/* nor does more of it go on */
 };
 
 /* The bend of the path that was noted last.  It is the same as far as @to_mm
