@@ -98,6 +98,7 @@ static int add_text(struct store *s, const char *id, const char *text,
 	return store_add(s, &(struct store_new) {
 		.id = id, .name = id, .sha256 = hex, .tech_sha256 = "",
 		.text = text, .bytes = bytes, .lines = 3, .now_us = 1000,
+		.told = "it is queued",
 	}, n);
 }
 
@@ -155,6 +156,29 @@ static void live(struct store *s, struct life *l)
 	assert_int_equal(state_in(s, "first"), JOB_DONE);
 }
 
+/* How often it was told that this job is queued. */
+static int times_queued(struct store *s, const char *id)
+{
+	char *all = store_json(s, STORE_EVENTS, "", 0), what[100];
+	int n = 0;
+
+	assert_non_null(all);
+	snprintf(what, sizeof(what), "\"kind\":\"queued\",\"job\":\"%s\"",
+		 id);
+	for (const char *at = all; (at = strstr(at, what)); at++)
+		n++;
+	free(all);
+	return n;
+}
+
+/* A job is there with its event, or not at all. */
+static void look_at_queued(struct store *s)
+{
+	for (int i = 0; i < 2; i++)
+		assert_int_equal(times_queued(s, ids[i]),
+				 state_in(s, ids[i]) != JOB_NSTATES);
+}
+
 /* What the next service finds, when this one was killed. */
 static void look(struct life *l, bool healed)
 {
@@ -164,6 +188,7 @@ static void look(struct life *l, bool healed)
 	assert_string_equal(store_why(s), "");
 	for (int i = 0; i < 2; i++)
 		assert_true(!l->added[i] || state_in(s, ids[i]) != JOB_NSTATES);
+	look_at_queued(s);
 	if (l->ended && healed)
 		assert_int_equal(state_in(s, "first"), JOB_DONE);
 	/* A job that began is known to have: it is not cut as a new one. */
@@ -219,6 +244,7 @@ static void fail_at(long k, int rc, bool heals)
 		for (int i = 0; i < 2; i++)
 			assert_true(l.added[i] ||
 				    state_in(s, ids[i]) == JOB_NSTATES);
+		look_at_queued(s);
 	}
 	assert_true(!heals || !*store_why(s));
 	store_close(s);
