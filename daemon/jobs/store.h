@@ -120,8 +120,8 @@ const char *store_why(const struct store *s);
 const char *store_mended(const struct store *s);
 
 /**
- * store_tick() - try to store what was kept; to be called every 20 ms.  Return:
- * true when nothing is kept any more.
+ * store_tick() - try to store what was kept, a piece at a time; to be called
+ * every 20 ms.  Return: true when nothing is kept any more.
  */
 bool store_tick(struct store *s, int64_t now_us);
 
