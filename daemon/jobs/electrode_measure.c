@@ -88,9 +88,8 @@ static const char *why_not(const struct jobs *j,
 static int add_job(struct jobs *j, const struct jobs_lcm_command *c,
 		   uint32_t number, bool is_new, char id[64])
 {
-	char text[TEXT_MAX], name[64], hex[65];
+	char text[TEXT_MAX], name[64], hex[65], told[64];
 	unsigned char hash[crypto_hash_sha256_BYTES];
-	uint32_t n;
 
 	make_text(j, number, text);
 	snprintf(id, 64, "measure-%u-%llx", number, (unsigned long long)c->act);
@@ -98,12 +97,13 @@ static int add_job(struct jobs *j, const struct jobs_lcm_command *c,
 		 is_new ? " new" : "");
 	crypto_hash_sha256(hash, (const unsigned char *)text, strlen(text));
 	sodium_bin2hex(hex, sizeof(hex), hash, sizeof(hash));
-	return store_add(j->store, &(struct store_new) {
+	snprintf(told, sizeof(told), "job measure electrode %u queued", number);
+	return jobs_add(j, &(struct store_new) {
 		.id = id, .name = name, .sha256 = hex, .tech_sha256 = "",
 		.text = text, .bytes = strlen(text), .lines = 8, .hold = true,
 		.now_us = jobs_utime(), .electrode = number,
-		.measures = number + (is_new ? NEW : 0),
-	}, &n);
+		.measures = number + (is_new ? NEW : 0), .told = told,
+	});
 }
 
 void electrode_measure(struct jobs *j, const struct verb *v,
@@ -131,8 +131,6 @@ void electrode_measure(struct jobs *j, const struct verb *v,
 		return;
 	}
 	queue_recount(j);
-	jobs_note(j, &(struct jobs_note) { .kind = "queued", .job = id },
-		  "job measure electrode %u queued", e.n);
 	snprintf(reason, sizeof(reason), "job %s measures it; it waits for "
 		 "start", id);
 	verbs_answer(j, c, 0, reason);

@@ -99,6 +99,10 @@ void jobs_note(struct jobs *j, const struct jobs_note *n,
 	       const char *text, ...)
 	__attribute__((format(printf, 3, 4)));
 
+/** jobs_add() - a new job, and publish its event, @n->told.  Return: as
+ *  store_add() */
+int jobs_add(struct jobs *j, const struct store_new *n);
+
 /** jobs_answer() - answer a command; repeats of it get the same answer. */
 void jobs_answer(struct jobs *j, const struct jobs_lcm_ack *a);
 

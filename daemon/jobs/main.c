@@ -85,6 +85,14 @@ static int commit_note(struct jobs *j)
 	return err;
 }
 
+static void publish(struct jobs *j, const struct jobs_note *n, const char *text)
+{
+	jobs_lcm_event(j->lcm, &(struct jobs_lcm_event) {
+		.kind = n->kind, .job = n->job, .outcome = n->outcome,
+		.text = text, .place_mm = n->place_mm,
+	});
+}
+
 void jobs_note(struct jobs *j, const struct jobs_note *n,
 	       const char *text, ...)
 {
@@ -109,10 +117,20 @@ void jobs_note(struct jobs *j, const struct jobs_note *n,
 		snprintf(words + strlen(words), sizeof(words) - strlen(words),
 			 " (kept in memory, not on the disk: %s)",
 			 store_why(j->store));
-	jobs_lcm_event(j->lcm, &(struct jobs_lcm_event) {
-		.kind = n->kind, .job = n->job, .outcome = n->outcome,
-		.text = words, .place_mm = n->place_mm,
-	});
+	publish(j, n, words);
+}
+
+int jobs_add(struct jobs *j, const struct store_new *n)
+{
+	const struct jobs_note note = { .kind = "queued", .job = n->id };
+	uint32_t number;
+	const int err = store_add(j->store, n, &number);
+
+	if (err != 0)
+		return err;
+	log_notice("%s: %s", note.kind, n->told);
+	publish(j, &note, n->told);
+	return 0;
 }
 
 void jobs_answer(struct jobs *j, const struct jobs_lcm_ack *a)

@@ -95,8 +95,7 @@ static const char *changed(struct jobs *j, const struct mdi_check *k)
 static int add(struct jobs *j, const struct mdi *m, uint32_t lines)
 {
 	unsigned char hash[crypto_hash_sha256_BYTES];
-	char hex[65];
-	uint32_t n;
+	char hex[65], told[128];
 
 	crypto_hash_sha256(hash, (const unsigned char *)m->text,
 			   strlen(m->text));
@@ -104,11 +103,12 @@ static int add(struct jobs *j, const struct mdi *m, uint32_t lines)
 	/* The job has a transaction of its own. */
 	if (act_commit(j))
 		return -EIO;
-	return store_add(j->store, &(struct store_new) {
+	snprintf(told, sizeof(told), "%s begins at once", m->name);
+	return jobs_add(j, &(struct store_new) {
 		.id = m->id, .name = m->name, .sha256 = hex, .tech_sha256 = "",
 		.text = m->text, .bytes = strlen(m->text), .lines = lines,
-		.now_us = jobs_utime(), .measures = m->measures,
-	}, &n);
+		.now_us = jobs_utime(), .measures = m->measures, .told = told,
+	});
 }
 
 static void begin(struct jobs *j, const struct jobs_lcm_command *c,
@@ -120,8 +120,6 @@ static void begin(struct jobs *j, const struct jobs_lcm_command *c,
 	}
 	queue_go(j);
 	queue_recount(j);
-	jobs_note(j, &(struct jobs_note) { .kind = "queued", .job = m->id },
-		  "%s begins at once", m->name);
 	verbs_answer(j, c, 0, m->id);
 }
 

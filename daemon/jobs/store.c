@@ -76,6 +76,24 @@ static int insert_begin(struct store *s, const struct store_new *j, int64_t n)
 			n, j->begin_at);
 }
 
+static int write_note(struct store *s, enum store_keep keep,
+		      const struct store_note *e)
+{
+	return store_do(s, keep, "INSERT INTO event VALUES(?, ?, ?, ?, ?, ?)",
+			"isssds", e->now_us, e->kind, e->job, e->outcome,
+			e->place_mm, e->text);
+}
+
+/* It goes with the row of the job. */
+static int insert_told(struct store *s, const struct store_new *j)
+{
+	return !j->told ? 0 :
+	       write_note(s, STORE_MUST, &(struct store_note) {
+			.kind = "queued", .job = j->id, .outcome = "",
+			.text = j->told, .now_us = j->now_us,
+	       });
+}
+
 /* A long one has its file already, if it comes from an upload. */
 static int keep_long(struct store *s, const struct store_new *j)
 {
@@ -108,6 +126,8 @@ int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n)
 	}
 	if (err == 0)
 		err = insert_begin(s, j, n);
+	if (err == 0)
+		err = insert_told(s, j);
 	if (err < 0) {
 		store_undo(s);
 		return err;
@@ -360,9 +380,7 @@ int store_change(struct store *s, uint32_t n, const struct store_change *c)
 
 int store_note(struct store *s, const struct store_note *e)
 {
-	return store_do(s, STORE_MAY_GO, "INSERT INTO event VALUES"
-			"(?, ?, ?, ?, ?, ?)", "isssds", e->now_us, e->kind,
-			e->job, e->outcome, e->place_mm, e->text);
+	return write_note(s, STORE_MAY_GO, e);
 }
 
 /* -- Numbers -------------------------------------------------------------- */

@@ -66,6 +66,8 @@ struct store_new {
 	bool hold;
 	const char *begin_at;		/* for store_resume_at(); NULL: there is
 					 * none */
+	const char *told;		/* the text of its event "queued"; NULL:
+					 * there is none */
 	int64_t now_us;
 	uint32_t electrode, measures;	/* as in struct store_job */
 };
@@ -118,8 +120,8 @@ const char *store_why(const struct store *s);
 const char *store_mended(const struct store *s);
 
 /**
- * store_tick() - try to store what was kept; to be called every 20 ms.  Return:
- * true when nothing is kept any more.
+ * store_tick() - try to store what was kept, a piece at a time; to be called
+ * every 20 ms.  Return: true when nothing is kept any more.
  */
 bool store_tick(struct store *s, int64_t now_us);
 
@@ -138,7 +140,8 @@ struct store_size {
 
 void store_measure(struct store *s, struct store_size *ret);
 
-/** store_add() - a new job, queued, or not at all.  @ret_n its number. */
+/** store_add() - a new job, queued, with its event, or not at all.  @ret_n its
+ *  number. */
 int store_add(struct store *s, const struct store_new *j, uint32_t *ret_n);
 
 /* Find a job: 0, -ENOENT, or -EIO: it cannot be known. */

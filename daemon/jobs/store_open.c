@@ -112,6 +112,9 @@ void store_close(struct store *s)
 {
 	if (!s)
 		return;
+	/* It is nearly there. */
+	while (s->disk)
+		store_come_back(s);
 	if (s->kept.n)
 		log_error("store: %u entries could not be stored: %s",
 			  s->kept.n, store_why(s));
@@ -144,7 +147,7 @@ void store_measure(struct store *s, struct store_size *ret)
 			 store_text_bytes(s),
 		.jobs = (uint32_t)store_number_of(s, 0, "SELECT count(*) FROM "
 						  "job", ""),
-		.kept = s->kept.n, .dropped = s->dropped,
+		.kept = s->kept.n + s->brought.n, .dropped = s->dropped,
 	};
 	snprintf(ret->path, sizeof(ret->path), "%s", s->path);
 }

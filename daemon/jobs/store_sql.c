@@ -72,16 +72,25 @@ static void write_free(struct store_write *w)
 	free(w);
 }
 
+static struct store_write *writes_pop(struct store_writes *l)
+{
+	struct store_write *w = l->first;
+
+	if (!w)
+		return NULL;
+	l->first = w->next;
+	if (!l->first)
+		l->last = &l->first;
+	l->n--;
+	return w;
+}
+
 void store_writes_free(struct store_writes *l)
 {
 	struct store_write *w;
 
-	while ((w = l->first)) {
-		l->first = w->next;
+	while ((w = writes_pop(l)))
 		write_free(w);
-	}
-	l->last = &l->first;
-	l->n = 0;
 }
 
 static void writes_add(struct store_writes *l, struct store_write *w)
@@ -92,6 +101,14 @@ static void writes_add(struct store_writes *l, struct store_write *w)
 	*l->last = w;
 	l->last = &w->next;
 	l->n++;
+}
+
+static void writes_move(struct store_writes *to, struct store_writes *from)
+{
+	struct store_write *w;
+
+	while ((w = writes_pop(from)))
+		writes_add(to, w);
 }
 
 static void writes_take_out(struct store_writes *l, struct store_write **at)
@@ -139,7 +156,7 @@ static void keep(struct store *s, struct store_write *w)
 		else
 			at = &(*at)->next;
 	}
-	if (s->kept.n >= KEPT_MAX)
+	if (s->kept.n + s->brought.n >= KEPT_MAX)
 		keep_room(s);
 	writes_add(&s->kept, w);
 }
@@ -202,8 +219,7 @@ void store_degrade(struct store *s, int err)
 	s->err = err == -EIO ? store_file_probe(s) : err;
 	s->together = false;
 	/* A promise that was not written in time is not written later. */
-	while ((w = s->group.first)) {
-		s->group.first = w->next;
+	while ((w = writes_pop(&s->group))) {
 		if (w->keep == STORE_MUST) {
 			write_free(w);
 			continue;
@@ -211,7 +227,6 @@ void store_degrade(struct store *s, int err)
 		carry_out(s->db, w);
 		keep(s, w);
 	}
-	store_writes_free(&s->group);
 	tell_degraded(s);
 }
 
@@ -226,69 +241,90 @@ int store_failed(struct store *s, int rc)
 	return s->err;
 }
 
-int store_replay(struct store *s, sqlite3 *db)
+/* The disk fails again: what was brought there is in no transaction any more.
+ * Return: why, -errno. */
+static int leave_disk(struct store *s, int rc)
 {
-	int rc = sqlite3_exec(db, "BEGIN IMMEDIATE", NULL, NULL, NULL);
+	const int err = store_file_errno(s->disk, rc);
+	struct store_writes behind = s->kept;
 
-	for (struct store_write *w = s->kept.first; w && rc == SQLITE_OK;
-	     w = w->next) {
-		rc = carry_out(db, w);
-		/* If the row exists already, that is fine. */
-		if ((rc & 0xff) == SQLITE_CONSTRAINT)
-			rc = SQLITE_OK;
-	}
-	if (rc == SQLITE_OK)
-		rc = sqlite3_exec(db, "COMMIT", NULL, NULL, NULL);
-	return rc;
+	sqlite3_close_v2(s->disk);
+	s->disk = NULL;
+	s->kept = (struct store_writes) { .n = 0 };
+	writes_move(&s->kept, &s->brought);
+	writes_move(&s->kept, &behind);
+	return err;
 }
 
-/* Go back to the disk and write everything that was kept. */
-static int come_back(struct store *s)
+static int bring_begin(struct store *s)
 {
-	sqlite3 *disk = NULL;
-	int rc, err;
+	int err, rc;
 
 	s->told[0] = '\0';
-	err = store_file_open(s, &disk);
+	err = store_file_open(s, &s->disk);
+	if (err < 0) {
+		s->disk = NULL;
+		return err;
+	}
+	sqlite3_busy_timeout(s->disk, 50);
+	rc = sqlite3_exec(s->disk, "BEGIN IMMEDIATE", NULL, NULL, NULL);
+	return rc == SQLITE_OK ? 0 : leave_disk(s, rc);
+}
+
+static int bring_piece(struct store *s)
+{
+	for (int i = 0; i < STORE_PIECE && s->kept.n; i++) {
+		const int rc = carry_out(s->disk, s->kept.first);
+
+		/* If the row exists already, that is fine. */
+		if (rc != SQLITE_OK && (rc & 0xff) != SQLITE_CONSTRAINT)
+			return rc;
+		writes_add(&s->brought, writes_pop(&s->kept));
+	}
+	return SQLITE_OK;
+}
+
+int store_come_back(struct store *s)
+{
+	const int err = s->disk ? 0 : bring_begin(s);
+	int rc;
 
 	if (err < 0)
 		return err;
-	sqlite3_busy_timeout(disk, 50);
-	rc = store_replay(s, disk);
-	if (rc != SQLITE_OK) {
-		err = store_file_errno(disk, rc);
-		sqlite3_close_v2(disk);
-		return err;
-	}
-	sqlite3_busy_timeout(disk, STORE_BUSY_MS);
+	rc = bring_piece(s);
+	if (rc == SQLITE_OK && s->kept.n)
+		return 1;
+	if (rc == SQLITE_OK)
+		rc = sqlite3_exec(s->disk, "COMMIT", NULL, NULL, NULL);
+	if (rc != SQLITE_OK)
+		return leave_disk(s, rc);
+	sqlite3_busy_timeout(s->disk, STORE_BUSY_MS);
 	sqlite3_close_v2(s->db);
-	s->db = disk;
+	s->db = s->disk;
+	s->disk = NULL;
 	s->in_memory = false;
 	s->err = 0;
+	log_notice("store: it can be written again; %u entries that were kept "
+		   "in memory are stored, %llu were dropped", s->brought.n,
+		   (unsigned long long)s->dropped);
+	store_writes_free(&s->brought);
 	return 0;
 }
 
 bool store_tick(struct store *s, int64_t now_us)
 {
-	const uint32_t n = s->kept.n;
 	int err;
 
-	if (!s->in_memory || s->together || now_us < s->again_us)
+	if (!s->in_memory || s->together ||
+	    (!s->disk && now_us < s->again_us))
 		return false;
 	s->again_us = now_us + TRY_US;
-	err = come_back(s);
-	if (err < 0) {
-		if (err != s->err) {
-			s->err = err;
-			tell_degraded(s);
-		}
-		return false;
+	err = store_come_back(s);
+	if (err < 0 && err != s->err) {
+		s->err = err;
+		tell_degraded(s);
 	}
-	store_writes_free(&s->kept);
-	log_notice("store: it can be written again; %u entries that were kept "
-		   "in memory are stored, %llu were dropped", n,
-		   (unsigned long long)s->dropped);
-	return true;
+	return err == 0;
 }
 
 /* -- What the others call ------------------------------------------------- */

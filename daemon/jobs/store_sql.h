@@ -7,7 +7,8 @@
  * a write or a read fails, the store is degraded. Then `db` becomes a copy in
  * memory of all tables but the texts; what is written goes there and into a
  * list, and store_tick() tries to bring the list to the disk. So a question is
- * always answered by what was written last.
+ * always answered by what was written last.  The list goes there in pieces, so
+ * that the loop does not stand, but in one transaction: all of it, or nothing.
  *
  * The list is bounded. Of two writes of the same statement to the same row only
  * the later one is needed. If there is no room, the oldest write that may be
@@ -39,6 +40,9 @@ struct store_value {
 	};
 };
 
+/* So many writes are brought to the disk at a time. */
+#define STORE_PIECE	128
+
 /* A statement with its values. */
 struct store_write {
 	struct store_write *next;
@@ -65,6 +69,9 @@ struct store {
 	bool together;			/* a transaction is open ... */
 	struct store_writes group;	/* ... of these */
 	struct store_writes kept;
+	sqlite3 *disk;			/* where what was kept is brought to;
+					 * NULL: it is not yet */
+	struct store_writes brought;	/* into its transaction */
 	uint64_t dropped;
 	int64_t retained_us;
 	char told[512];			/* what was mended at the start */
@@ -108,8 +115,9 @@ void store_degrade(struct store *s, int err);
 /** store_undo() - drop an open transaction and what is in it. */
 void store_undo(struct store *s);
 
-/** store_replay() - what was kept, into @db, whole or not.  Return: SQLite's */
-int store_replay(struct store *s, sqlite3 *db);
+/** store_come_back() - bring the next piece of what was kept to the disk.
+ *  Return: 1: there is more; 0: all is there; -errno. */
+int store_come_back(struct store *s);
 
 /** store_writes_free() - forget the kept writes. */
 void store_writes_free(struct store_writes *w);

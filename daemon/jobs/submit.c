@@ -155,19 +155,20 @@ static void accept_text(struct jobs *j, struct upload *up,
 {
 	const uint32_t lines = r->lines;
 	struct queue *q = &j->queue;
-	char hex[65], reason[640], way[480] = "", *body;
+	char hex[65], reason[640], told[512], way[480] = "", *body;
 	struct store_new n = {
 		.id = up->id, .name = up->name, .sha256 = hex,
 		.text = up->text, .bytes = up->bytes, .lines = lines,
 		.tech_sha256 = r->tech_sha256,
 		.hold = up->hold, .now_us = jobs_utime(),
 		.begin_at = again_named(up->from_line, up->from_mm),
-		.electrode = up->electrode,
+		.electrode = up->electrode, .told = told,
 	};
-	uint32_t number;
 
 	hash_hex(hex, up->sha256);
-	if (store_add(j->store, &n, &number) != 0) {
+	snprintf(told, sizeof(told), "job %s queued, %u lines, %zu bytes",
+		 n.name, lines, n.bytes);
+	if (jobs_add(j, &n) != 0) {
 		refuse_degraded(j, up);
 		return;
 	}
@@ -177,9 +178,6 @@ static void accept_text(struct jobs *j, struct upload *up,
 	else if (q->behind == 0 && (q->job.n == 0 || queue_is_leaving(q)))
 		queue_go(j);
 	queue_recount(j);
-	jobs_note(j, &(struct jobs_note) { .kind = "queued", .job = n.id },
-		  "job %s queued, %u lines, %zu bytes", n.name, lines,
-		  n.bytes);
 	tell_notes(j, up, r);
 	if (n.begin_at)
 		config_entry_words(j->config, &r->entry, way, sizeof(way));

@@ -98,6 +98,7 @@ static int add_text(struct store *s, const char *id, const char *text,
 	return store_add(s, &(struct store_new) {
 		.id = id, .name = id, .sha256 = hex, .tech_sha256 = "",
 		.text = text, .bytes = bytes, .lines = 3, .now_us = 1000,
+		.told = "it is queued",
 	}, n);
 }
 
@@ -155,6 +156,29 @@ static void live(struct store *s, struct life *l)
 	assert_int_equal(state_in(s, "first"), JOB_DONE);
 }
 
+/* How often it was told that this job is queued. */
+static int times_queued(struct store *s, const char *id)
+{
+	char *all = store_json(s, STORE_EVENTS, "", 0), what[100];
+	int n = 0;
+
+	assert_non_null(all);
+	snprintf(what, sizeof(what), "\"kind\":\"queued\",\"job\":\"%s\"",
+		 id);
+	for (const char *at = all; (at = strstr(at, what)); at++)
+		n++;
+	free(all);
+	return n;
+}
+
+/* A job is there with its event, or not at all. */
+static void look_at_queued(struct store *s)
+{
+	for (int i = 0; i < 2; i++)
+		assert_int_equal(times_queued(s, ids[i]),
+				 state_in(s, ids[i]) != JOB_NSTATES);
+}
+
 /* What the next service finds, when this one was killed. */
 static void look(struct life *l, bool healed)
 {
@@ -164,6 +188,7 @@ static void look(struct life *l, bool healed)
 	assert_string_equal(store_why(s), "");
 	for (int i = 0; i < 2; i++)
 		assert_true(!l->added[i] || state_in(s, ids[i]) != JOB_NSTATES);
+	look_at_queued(s);
 	if (l->ended && healed)
 		assert_int_equal(state_in(s, "first"), JOB_DONE);
 	/* A job that began is known to have: it is not cut as a new one. */
@@ -219,6 +244,7 @@ static void fail_at(long k, int rc, bool heals)
 		for (int i = 0; i < 2; i++)
 			assert_true(l.added[i] ||
 				    state_in(s, ids[i]) == JOB_NSTATES);
+		look_at_queued(s);
 	}
 	assert_true(!heals || !*store_why(s));
 	store_close(s);
@@ -396,12 +422,136 @@ static void the_list_in_memory_is_bounded_and_keeps_what_counts(void **state)
 	assert_true(size.kept <= 4096);
 	assert_true(size.dropped > 15000);
 	disk.fail_from = -1;
-	assert_true(store_tick(s, 1));
+	while (!store_tick(s, 1))
+		assert_ptr_not_equal(s->disk, NULL);
 	store_close(s);
 	s = open_store();
 	assert_int_equal(state_in(s, "job"), JOB_DONE);
 	assert_int_equal(store_number(s, "waiting", 0), 19999);
 	store_close(s);
+}
+
+/* -- A list that is brought to the disk in pieces ------------------------- */
+
+#define ALARMS	1000
+
+static void alarms(struct store *s, int from, int n)
+{
+	for (int i = from; i < from + n; i++)
+		store_note(s, &(struct store_note) {
+			.kind = "alarm", .job = "", .outcome = "", .text = "",
+			.now_us = i });
+}
+
+/* A store that keeps so many alarms; the disk is good again. */
+static struct store *open_with_alarms(void)
+{
+	struct store *s = open_store();
+
+	disk.n = 0;
+	disk.fail_from = 0;
+	disk.fail_rc = SQLITE_FULL;
+	alarms(s, 0, ALARMS);
+	disk.fail_from = -1;
+	assert_int_equal(s->kept.n, ALARMS);
+	return s;
+}
+
+/* As another program sees it; the store may be open. */
+static int alarms_on_disk(void)
+{
+	char path[200];
+	sqlite3_stmt *q = NULL;
+	sqlite3 *db = NULL;
+	int n;
+
+	snprintf(path, sizeof(path), "%s/m.db", dir);
+	assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY,
+					 NULL), SQLITE_OK);
+	assert_int_equal(sqlite3_prepare_v2(db, "SELECT count(*), "
+			 "count(DISTINCT utime) FROM event", -1, &q, NULL),
+			 SQLITE_OK);
+	assert_int_equal(sqlite3_step(q), SQLITE_ROW);
+	n = sqlite3_column_int(q, 0);
+	assert_int_equal(n, sqlite3_column_int(q, 1));
+	sqlite3_finalize(q);
+	sqlite3_close(db);
+	return n;
+}
+
+/* Return: the ticks that it took. */
+static int bring_all(struct store *s)
+{
+	uint32_t left = s->kept.n;
+	int ticks = 1;
+
+	for (; !store_tick(s, 10000000); ticks++) {
+		assert_ptr_not_equal(s->disk, NULL);
+		assert_in_range(left - s->kept.n, 1, STORE_PIECE);
+		left = s->kept.n;
+		/* A piece alone is nothing. */
+		assert_int_equal(alarms_on_disk(), 0);
+	}
+	assert_true(left <= STORE_PIECE);
+	return ticks;
+}
+
+static void what_was_kept_comes_in_pieces_and_at_once(void **state)
+{
+	struct store *s = open_with_alarms();
+
+	(void)state;
+	assert_int_equal(bring_all(s), (ALARMS - 1) / STORE_PIECE + 1);
+	assert_int_equal(alarms_on_disk(), ALARMS);
+	assert_string_equal(store_why(s), "");
+	store_close(s);
+}
+
+static void what_is_written_between_the_pieces_comes_with_them(void **state)
+{
+	struct store *s = open_with_alarms();
+	uint32_t n;
+
+	(void)state;
+	assert_false(store_tick(s, 10000000));
+	alarms(s, ALARMS, 10);
+	assert_int_equal(store_set_number(s, "waiting", 7), STORE_KEPT);
+	assert_true(add(s, "new", &n) < 0);
+	bring_all(s);
+	assert_int_equal(alarms_on_disk(), ALARMS + 10);
+	assert_int_equal(store_number(s, "waiting", 0), 7);
+	store_close(s);
+}
+
+/* At the end of the pieces, or when their pages no longer fit into memory. */
+static void a_disk_that_fails_between_the_pieces_loses_nothing(void **state)
+{
+	struct store *s = open_with_alarms();
+
+	(void)state;
+	assert_false(store_tick(s, 10000000));
+	disk.n = 0;
+	disk.fail_from = 0;
+	for (int i = 0; s->disk && i < ALARMS; i++)
+		assert_false(store_tick(s, 10000000));
+	assert_string_equal(store_why(s), "the disk is full");
+	assert_int_equal(s->kept.n, ALARMS);
+	disk.fail_from = -1;
+	assert_int_equal(alarms_on_disk(), 0);
+	while (!store_tick(s, 20000000))
+		assert_ptr_not_equal(s->disk, NULL);
+	assert_int_equal(alarms_on_disk(), ALARMS);
+	store_close(s);
+}
+
+static void a_service_that_ends_between_the_pieces_brings_them_all(void **state)
+{
+	struct store *s = open_with_alarms();
+
+	(void)state;
+	assert_false(store_tick(s, 10000000));
+	store_close(s);
+	assert_int_equal(alarms_on_disk(), ALARMS);
 }
 
 static void a_store_of_0_1_0_is_brought_up(void **state)
@@ -1032,6 +1182,10 @@ int main(void)
 		T(a_long_text_costs_the_database_nothing),
 		T(a_cut_that_never_ends_writes_little),
 		T(the_list_in_memory_is_bounded_and_keeps_what_counts),
+		T(what_was_kept_comes_in_pieces_and_at_once),
+		T(what_is_written_between_the_pieces_comes_with_them),
+		T(a_disk_that_fails_between_the_pieces_loses_nothing),
+		T(a_service_that_ends_between_the_pieces_brings_them_all),
 		T(a_store_of_0_1_0_is_brought_up),
 		T(a_store_without_sums_by_condition_is_brought_up),
 		T(what_a_job_came_to_goes_with_it),

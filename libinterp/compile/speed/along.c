@@ -31,7 +31,8 @@ void pass_note_way(struct pass *w, uint32_t before, uint32_t behind,
 	struct bent_ways *k = &w->bent_ways;
 
 	pass_way_end(w, before);
-	k->last = 0;
+	pass_way_known(w);
+	k->behind = behind;
 	for (uint32_t j = 0; j < w->n; j++) {
 		if (!(is[j].bend > 0) || !takes(w, &is[j], j, v_mm_s))
 			continue;
@@ -52,10 +53,11 @@ void pass_way_on(struct pass *w, uint32_t i, const struct heading *a,
 		 const struct heading *b)
 {
 	struct way_on *k = &w->gate.way;
-	struct bent is[INTERP_NAXES] = { 0 };
+	struct bent is[INTERP_NAXES];
 	double sum = 0;
 
 	for (uint32_t j = 0; j < w->n; j++) {
+		is[j] = (struct bent) { 0 };
 		if (!(a->along & b->along & 1u << j))
 			continue;
 		is[j].bend = fabs(b->rate[j] - a->rate[j]);

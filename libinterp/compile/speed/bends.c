@@ -6,11 +6,16 @@
 
 #include <string.h>
 
-/* What a segment allows as if nothing bent. */
-static void note_own(struct interp_bends *b, const struct interp_seg *s)
+/* What the first of the segments @s allow, @n at most, as if nothing bent. */
+static struct interp_bends own_of(const struct interp_seg *s, uint32_t n)
 {
-	b->a_mm_s2 = pass_least(s->a_mm_s2, b->a_mm_s2);
-	b->j_mm_s3 = pass_least(s->j_mm_s3, b->j_mm_s3);
+	struct interp_bends b = INTERP_BENDS_NONE;
+
+	for (uint32_t i = 0; i < n && i < INTERP_BENDS_SEGS; i++) {
+		b.a_mm_s2 = pass_least(s[i].a_mm_s2, b.a_mm_s2);
+		b.j_mm_s3 = pass_least(s[i].j_mm_s3, b.j_mm_s3);
+	}
+	return b;
 }
 
 static struct interp_bends bends_of(const struct pass *w,
@@ -46,6 +51,7 @@ void pass_bends(const struct pass *w, struct interp_bends *bends)
 	const struct bent_nodes *k = &w->bent_nodes;
 	const struct bent_ways *ways = &w->bent_ways;
 	const size_t n = w->p->head->nbends;
+	const uint32_t segs = w->p->head->nsegs;
 
 	if (n == 0)
 		return;
@@ -53,10 +59,8 @@ void pass_bends(const struct pass *w, struct interp_bends *bends)
 		memset(bends, 0, n * sizeof(*bends));
 		return;
 	}
-	for (size_t i = 0; i < n; i++)
-		bends[i] = INTERP_BENDS_NONE;
-	for (uint32_t i = 0; i < w->p->head->nsegs; i++)
-		note_own(&bends[i / INTERP_BENDS_SEGS], &w->segs[i]);
+	for (uint32_t i = 0; i < segs; i += INTERP_BENDS_SEGS)
+		bends[i / INTERP_BENDS_SEGS] = own_of(&w->segs[i], segs - i);
 	for (size_t i = 0; i < k->n; i++)
 		join(w, &k->at[i], bends);
 	for (size_t i = 0; i < ways->n; i++) {

@@ -114,7 +114,7 @@ static inline uint16_t softer_ahead(const struct interp_seg *s, uint32_t left)
 
 	if (s->kind >= INTERP_BEGIN)
 		return 1;
-	if (left > 1 && s[1].kind < INTERP_BEGIN && !stands(s) &&
+	if (s[1].kind < INTERP_BEGIN && !stands(s) &&
 	    is_as_soft(s + 1, s))
 		return hop_on(s[1].softer_ahead);
 	while (m < left && m < HOP_MAX && s[m].kind < INTERP_BEGIN &&
@@ -141,7 +141,8 @@ static inline bool is_alike(const struct interp_seg *s,
 			    const struct interp_seg *as)
 {
 	return s->kind < INTERP_BEGIN && as->kind < INTERP_BEGIN &&
-	       s->flags == as->flags && s->feed_mm_s == as->feed_mm_s;
+	       s->flags == as->flags &&
+	       memcmp(&s->feed_mm_s, &as->feed_mm_s, sizeof(float)) == 0;
 }
 
 /* One that is like the next one: mostly its hops lead to the same places. */

@@ -22,9 +22,13 @@ struct run {
 /* Does it go on with this value? */
 static inline bool run_on(struct run *k, float v)
 {
-	const float least = v < k->least ? v : k->least;
-	const float most = v > k->most ? v : k->most;
+	float least, most;
 
+	/* Mostly it is between those before. */
+	if (v >= k->least && v <= k->most)
+		return true;
+	least = v < k->least ? v : k->least;
+	most = v > k->most ? v : k->most;
 	if (most > STEP * least)
 		return false;
 	k->least = least;

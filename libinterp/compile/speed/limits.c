@@ -30,6 +30,7 @@ static void add_level(struct levels *l, double at)
 		if (l->at[k] == at)
 			return;
 	l->at[l->n++] = at;
+	l->above = larger(l->above, (1 + 2 * SAME) * at);
 }
 
 /* However small a corner is, a rounding hides the bend of short lines.  Over a
@@ -98,6 +99,7 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 			w->a_linear_mm_s2 = smaller(w->a_linear_mm_s2,
 						    m->a_max_mm_s2);
 	}
+	w->alike = w->a_levels.n == 1 && w->j_levels.n == 1;
 	windows(w);
 }
 
@@ -122,16 +124,24 @@ static float down(double most)
 	return down_to(most, COARSE);
 }
 
+/* What an axis can do, if @most is that but for a rounding; else 0.  On most
+ * lines no axis moves alone, so that it is more than any can do. */
+static inline double own_level(const struct levels *own, double most)
+{
+	if (most > own->above && most < INFINITY)
+		return 0;
+	for (uint32_t k = 0; k < own->n; k++)
+		if (fabs(most - own->at[k]) <= SAME * most)
+			return own->at[k];
+	return 0;
+}
+
 /* A speed; that of an axis stays as it is. */
 static float level(const struct pass *w, double v_mm_s)
 {
-	for (uint32_t k = 0; k < w->v_levels.n; k++) {
-		const double own = w->v_levels.at[k];
+	const double own = own_level(&w->v_levels, v_mm_s);
 
-		if (fabs(v_mm_s - own) <= SAME * v_mm_s)
-			return (float)(own * (1 - 2 * SAME));
-	}
-	return down(v_mm_s);
+	return own > 0 ? (float)(own * (1 - 2 * SAME)) : down(v_mm_s);
 }
 
 /* So many limits that are near to each other are a plateau. */
@@ -180,11 +190,9 @@ static float plateau_level(struct pass *w, double v_mm_s)
  * known (levels.c). */
 static float soft(double most, const struct levels *own)
 {
-	for (uint32_t k = 0; k < own->n; k++) {
-		if (fabs(most - own->at[k]) <= SAME * most)
-			return (float)own->at[k];
-	}
-	return (float)most;
+	const double is = own_level(own, most);
+
+	return (float)(is > 0 ? is : most);
 }
 
 /*
@@ -356,9 +364,13 @@ static void limit_nodes(struct pass *w, uint32_t first, uint32_t i, double v)
 {
 	const float most = (float)v;
 
+	struct interp_seg *s = &w->segs[i];
+
 	/* Mostly one. */
-	for (uint32_t k = i; k-- > first; )
-		w->segs[k].node_mm_s = pass_least(w->segs[k].node_mm_s, most);
+	do {
+		s--;
+		s->node_mm_s = pass_least(s->node_mm_s, most);
+	} while (s > w->segs + first);
 }
 
 /* An action stops there anyway. */
@@ -371,12 +383,13 @@ static void note_parts(struct pass *w, uint32_t last, uint32_t i)
 }
 
 /* Node @i is known, and so is what is near to one before it. */
-static void look_for_dip(struct pass *w, uint32_t i)
+static void look_for_dip(struct pass *w, uint32_t i, double top_mm_s)
 {
 	const uint32_t k = i - DIP_NODES;
 	struct interp_seg *s;
 	double v;
 
+	w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s, (float)top_mm_s);
 	pass_note_dip(w, i);
 	if (i <= DIP_NODES)
 		return;
@@ -396,19 +409,21 @@ COLUMNS_INLINE void limit_node(struct pass *w, uint32_t last, uint32_t i,
 			       uint32_t n)
 {
 	const double top = smaller(w->top_mm_s[0], w->top_mm_s[1]);
-	double v = smaller(near_node_mm_s(w, last, i, a, b, n), top);
+	struct joint k = { .a = a, .b = b, .last = last, .i = i };
+	double v = smaller(near_node_mm_s(w, &k, n), top);
 
-	w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s, (float)top);
-	if (!(w->segs[last].kind == INTERP_LINE &&
-	      w->segs[i].kind == INTERP_LINE))
+	if (!(k.least_mm > 0))
 		v = smaller(v, pass_curl(w, last, i, a, b));
 	limit_nodes(w, last, i, v);
-	if (a->along != b->along)
-		note_parts(w, last, i);
-	if (w->bends)
-		pass_note_bends(w, last, i);
-	if (last + 1 == i && (a->along & b->along) != near_all(n))
-		look_for_dip(w, i);
+	/* Mostly nothing is beside the path. */
+	if ((a->along & b->along) != near_all(n)) {
+		if (a->along != b->along)
+			note_parts(w, last, i);
+		if (w->bends)
+			pass_note_bends(w, last, i);
+		if (last + 1 == i)
+			look_for_dip(w, i, top);
+	}
 	if (pass_is_tiny(w, last) && !pass_is_tiny(w, i)) {
 		const double over = pass_over_mm_s(w, &last, i, b);
 
@@ -560,6 +575,7 @@ void pass_finish(struct pass *w, struct interp_bends *bends)
 	pass_walk(w, w->end, w->end + 1);
 	pass_beside_corner(w, w->end);
 	pass_dip_bends(w);
+	pass_way_known(w);
 	pass_bends(w, bends);
 	pass_soften(w);
 	pass_levels(w);

@@ -86,11 +86,13 @@ static inline void near_look(const struct pass *w, uint32_t i, struct around *k)
 {
 	const struct interp_seg *s = w->segs;
 	const double here = s[i].s_mm, mm = k->mm;
-	uint32_t behind = k->behind, ahead = k->ahead > i ? k->ahead : i;
+	uint32_t behind = k->behind;
+	/* From itself a node is not as far as that. */
+	uint32_t ahead = k->ahead > i ? k->ahead : i + (i < w->run_end);
 
 	if (behind < w->run)
 		behind = w->run;
-	while (behind < i && here - s[behind + 1].s_mm >= mm)
+	while (behind + 1 < i && here - s[behind + 1].s_mm >= mm)
 		behind++;
 	while (ahead < w->run_end && s[ahead].s_mm - here < mm)
 		ahead++;
@@ -162,22 +164,47 @@ COLUMNS_INLINE void near_other_rates(const struct interp_seg *s,
 	}
 }
 
-/* The directions to both sides of a node, over half of their length. */
-struct near_bow {
-	const double *a, *b;
-	double mm;
+/* The node in front of segment @i, as the segments to both sides show it. */
+struct joint {
+	const struct heading *a, *b;
+	uint32_t last, i;		/* the segments */
+	double mm;			/* half of both */
+	double d[INTERP_NAXES];		/* how much rates change */
+	double turn;			/* in the columns that make the length
+					 * of both, squared */
+	double least_mm;		/* the shorter one; 0: not two lines */
+	bool own;			/* two lines, and no action between */
 };
 
-/* Lines as long as the window are their own chords. */
-static inline bool near_is_own(const struct pass *w, uint32_t last, uint32_t i,
-			       double mm)
+COLUMNS_INLINE void near_joint(const struct interp_seg *s, struct joint *k,
+			       uint32_t both, uint32_t n)
 {
-	const struct interp_seg *s = w->segs;
+	const struct interp_seg *a = &s[k->last], *b = &s[k->i];
+	const bool lines = a->kind == INTERP_LINE && b->kind == INTERP_LINE;
 
-	return s[i].length_mm >= mm && s[last].length_mm >= mm &&
-	       last + 1 == i && s[last].kind == INTERP_LINE &&
-	       s[i].kind == INTERP_LINE;
+	k->mm = (a->length_mm + b->length_mm) / 2;
+	k->least_mm = lines ? smaller(a->length_mm, b->length_mm) : 0;
+	k->own = lines && a + 1 == b;
+	k->turn = 0;
+	for (uint32_t j = 0; j < n; j++) {
+		k->d[j] = k->b->rate[j] - k->a->rate[j];
+		k->turn += both >> j & 1 ? k->d[j] * k->d[j] : 0;
+	}
 }
+
+/* Lines as long as the window are their own chords. */
+static inline bool near_is_own(const struct joint *k, double mm)
+{
+	return k->own && k->least_mm >= mm;
+}
+
+/* How the narrowest window shows a node. */
+struct near_bow {
+	const double *b;		/* the rates on from there */
+	double mm;			/* half of both chords */
+	double d[INTERP_NAXES];		/* how much rates change */
+	double turn;			/* squared */
+};
 
 /* Return: false if there is no way to one of the sides. */
 COLUMNS_INLINE bool near_bow_of(struct pass *w, uint32_t i,
@@ -190,40 +217,53 @@ COLUMNS_INLINE bool near_bow_of(struct pass *w, uint32_t i,
 	if (!near_chord_is(a, k->behind, i, near_all(n)))
 		near_chord(w, k->behind, i, near_all(n), a, n);
 	near_chord(w, i, k->ahead, near_all(n), b, n);
-	*ret = (struct near_bow) { a->h.rate, b->h.rate, (a->mm + b->mm) / 2 };
+	ret->b = b->h.rate;
+	ret->mm = (a->mm + b->mm) / 2;
+	ret->turn = 0;
+	for (uint32_t j = 0; j < n; j++) {
+		ret->d[j] = b->h.rate[j] - a->h.rate[j];
+		ret->turn += ret->d[j] * ret->d[j];
+	}
 	return a->mm > 0 && b->mm > 0;
+}
+
+/* Of the columns that move. */
+COLUMNS_INLINE struct weakest near_weakest(const struct pass *w,
+					   const double *d, const double *rate,
+					   uint32_t n)
+{
+	struct weakest ret = { INFINITY, INFINITY };
+
+	for (uint32_t j = 0; j < n; j++) {
+		if (d[j] == 0 && rate[j] == 0)
+			continue;
+		ret.a_mm_s2 = smaller(ret.a_mm_s2, w->a_mm_s2[j]);
+		ret.j_mm_s3 = smaller(ret.j_mm_s3, w->j_mm_s3[j]);
+	}
+	return ret;
 }
 
 /*
  * Where every column makes the length, the narrowest window mostly shows enough
  * speed, and nothing else has to be known.  Return: that, or less than @most.
  */
-COLUMNS_INLINE double near_curve(struct pass *w, uint32_t last, uint32_t i,
-				 const struct heading *ha,
-				 const struct heading *hb, double most,
-				 uint32_t n)
+COLUMNS_INLINE double near_curve(struct pass *w, const struct joint *joint,
+				 double most, uint32_t n)
 {
-	const struct interp_seg *s = w->segs;
-	const bool own = near_is_own(w, last, i, w->windows[0].mm);
-	struct near_bow k = {
-		ha->rate, hb->rate, (s[last].length_mm + s[i].length_mm) / 2
-	};
-	double turn = 0, acc = INFINITY, jerk = INFINITY, v;
+	const bool own = near_is_own(joint, w->windows[0].mm);
+	struct near_bow k = { joint->b->rate, joint->mm, .turn = joint->turn };
+	struct weakest can = { w->gate.a_mm_s2, w->gate.jerk_mm_s3 };
+	double v;
 
-	if (!own && !near_bow_of(w, i, &k, n))
+	for (uint32_t j = 0; j < n; j++)
+		k.d[j] = joint->d[j];
+	if (!own && !near_bow_of(w, joint->i, &k, n))
 		return 0;
-	for (uint32_t j = 0; j < n; j++) {
-		const double d = k.b[j] - k.a[j];
-
-		turn += d * d;
-		if (!(fabs(d) > 0) && k.b[j] == 0)
-			continue;
-		acc = smaller(acc, w->a_mm_s2[j]);
-		jerk = smaller(jerk, w->j_mm_s3[j]);
-	}
-	v = turn < NEAR_STRAIGHT ? INFINITY :
-	    pass_round_mm_s(larger(k.mm / sqrt(turn), w->corner_mm), acc,
-			    jerk);
+	if (!w->alike)
+		can = near_weakest(w, k.d, k.b, n);
+	v = k.turn < NEAR_STRAIGHT ? INFINITY :
+	    pass_round_mm_s(larger(k.mm / sqrt(k.turn), w->corner_mm),
+			    can.a_mm_s2, can.j_mm_s3);
 	if (v >= most && !own)
 		w->windows[0].on = !w->windows[0].on;
 	return v;
@@ -234,27 +274,18 @@ COLUMNS_INLINE double near_curve(struct pass *w, uint32_t last, uint32_t i,
  * and the answer costs less than pass_turn() itself.  All of a change counts
  * here, and of all axes the one that can do least.
  */
-COLUMNS_INLINE bool near_turns_faster(const struct pass *w, uint32_t last,
-				      uint32_t i, const struct heading *a,
-				      const struct heading *b, double v_mm_s,
+COLUMNS_INLINE bool near_turns_faster(const struct pass *w,
+				      const struct joint *k, double v_mm_s,
 				      uint32_t both, uint32_t n)
 {
-	const struct interp_seg *s = w->segs;
-	const double v = v_mm_s;
-	double turn = 0;
+	const double v = v_mm_s, turn = k->turn;
 
-	if (s[last].kind != INTERP_LINE || s[i].kind != INTERP_LINE ||
-	    a->along != b->along || s[last].length_mm < w->near.mm ||
-	    s[i].length_mm < w->near.mm)
+	if (!(k->least_mm >= w->near.mm) || k->a->along != k->b->along)
 		return false;
-	for (uint32_t j = 0; j < n; j++) {
-		const double d = b->rate[j] - a->rate[j];
-
-		if (both >> j & 1)
-			turn += d * d;
-		else if (!(fabs(d) * v < 0.99 * w->step_mm_s[j]))
+	for (uint32_t j = 0; j < n; j++)
+		if (!(both >> j & 1) &&
+		    !(fabs(k->d[j]) * v < 0.99 * w->step_mm_s[j]))
 			return false;
-	}
 	return turn < 1 && v * v * turn < w->turn_least[0] &&
 	       v * v * v * turn * turn < w->turn_least[1];
 }
@@ -283,14 +314,12 @@ static inline bool near_goes_on(const struct pass *w, uint32_t i, double bend2,
 }
 
 /* Then note that; the speed is the same. */
-static inline double near_way_on(struct pass *w, uint32_t i,
-				 const struct heading *a,
-				 const struct heading *b)
+static inline double near_way_on(struct pass *w, const struct joint *k)
 {
-	if (w->segs[i].s_mm < w->gate.way.same_mm)
-		pass_way_to(w, i);
+	if (w->segs[k->i].s_mm < w->gate.way.same_mm)
+		w->bent_ways.behind = k->i;
 	else
-		pass_way_on(w, i, a, b);
+		pass_way_on(w, k->i, k->a, k->b);
 	return w->gate.way.v_mm_s;
 }
 
@@ -301,27 +330,26 @@ static inline double near_way_on(struct pass *w, uint32_t i,
  * As pass_change().  Where no window is narrower than the lines, the change
  * from the node before the last one shows whether it has to be asked.
  */
-COLUMNS_INLINE double near_change(struct pass *w, uint32_t last, uint32_t i,
-				  const struct heading *a,
-				  const struct heading *b, double most_mm_s,
-				  uint32_t both, uint32_t n)
+COLUMNS_INLINE double near_change(struct pass *w, const struct joint *joint,
+				  double most_mm_s, uint32_t both, uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
 	struct change_gate *k = &w->gate;
+	const uint32_t i = joint->i;
 	const double v = most_mm_s;
 	double *was = k->bend[i & 1];
 	double sum = 0, bend2 = 0, per_mm, most;
 
 	if (i < k->next && v <= k->most_mm_s)
 		return k->v_mm_s;
-	if (!near_is_own(w, last, i, w->windows[PASS_CHANGE_FIRST].mm))
+	if (!near_is_own(joint, w->windows[PASS_CHANGE_FIRST].mm))
 		return pass_change(w, i, both, v);
 	if (k->node + 1 != i)
 		k->first = i;
 	k->node = i;
-	per_mm = 2 / (s[last].length_mm + s[i].length_mm);
+	per_mm = 1 / joint->mm;
 	for (uint32_t j = 0; j < n; j++) {
-		const double bend = (b->rate[j] - a->rate[j]) * per_mm;
+		const double bend = joint->d[j] * per_mm;
 		const double d = bend - was[j];
 
 		was[j] = bend;
@@ -338,59 +366,44 @@ COLUMNS_INLINE double near_change(struct pass *w, uint32_t last, uint32_t i,
 	if (!near_leaves_less(w, bend2, v))
 		return INFINITY;
 	return near_goes_on(w, i, bend2, v) ?
-	       near_way_on(w, i, a, b) : pass_change(w, i, both, NEAR_MORE * v);
+	       near_way_on(w, joint) : pass_change(w, i, both, NEAR_MORE * v);
 }
 
 /* As pass_arch(), of long lines. */
-COLUMNS_INLINE double near_arch(struct pass *w, uint32_t last, uint32_t i,
-				const struct heading *a,
-				const struct heading *b, double v,
-				uint32_t both, uint32_t n)
+COLUMNS_INLINE double near_arch(struct pass *w, const struct joint *k, double v,
+				uint32_t both)
 {
-	const struct interp_seg *s = w->segs;
-	const double mm = (s[last].length_mm + s[i].length_mm) / 2;
-	double turn = 0;
+	const double bend2 = k->turn / (k->mm * k->mm);
 
-	if (last + 1 != i || s[last].kind != INTERP_LINE ||
-	    s[i].kind != INTERP_LINE)
+	if (!k->own || !near_leaves_less(w, bend2, v))
 		return INFINITY;
-	for (uint32_t j = 0; j < n; j++) {
-		const double d = b->rate[j] - a->rate[j];
-
-		turn += both >> j & 1 ? d * d : 0;
-	}
-	turn /= mm * mm;
-	if (!near_leaves_less(w, turn, v))
-		return INFINITY;
-	return near_goes_on(w, i, turn, v) ?
-	       near_way_on(w, i, a, b) : pass_arch(w, i, both, NEAR_MORE * v);
+	return near_goes_on(w, k->i, bend2, v) ?
+	       near_way_on(w, k) : pass_arch(w, k->i, both, NEAR_MORE * v);
 }
 
-/* As pass_node_mm_s(). */
-COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
-				     const struct heading *a,
-				     const struct heading *b, uint32_t n)
+/* @both: the columns that make the length of both */
+COLUMNS_INLINE double near_joint_mm_s(struct pass *w, struct joint *k,
+				      uint32_t both, uint32_t n)
 {
 	const struct interp_seg *s = w->segs;
-	const double most = smaller((double)s[last].feed_max_mm_s,
-				    (double)s[i].feed_max_mm_s);
-	const bool curves = pass_is_short(w, last) || pass_is_short(w, i);
-	const uint32_t both = a->along & b->along;
+	const double most = smaller((double)s[k->last].feed_max_mm_s,
+				    (double)s[k->i].feed_max_mm_s);
+	const bool curves = pass_is_short(w, k->last) || pass_is_short(w, k->i);
 	const bool all = both == near_all(n);
 	double v = INFINITY, fast, turn;
 
-	w->bends = 0;
+	near_joint(s, k, both, n);
 	if (!all)
 		w->dip = (struct dip) {
 			0, SHOWN_NONE, SHOWN_NONE, INFINITY
 		};
 	if (curves)
-		v = all ? near_curve(w, last, i, a, b, most, n) : 0;
+		v = all ? near_curve(w, k, most, n) : 0;
 	if (curves && v < most)
-		v = pass_curve(w, i, both, most);
+		v = pass_curve(w, k->i, both, most);
 	if (curves) {
-		const double change = near_change(w, last, i, a, b,
-						  smaller(v, most), both, n);
+		const double change = near_change(w, k, smaller(v, most), both,
+						  n);
 
 		v = smaller(v, change);
 		if (!all)
@@ -398,16 +411,25 @@ COLUMNS_INLINE double near_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 						      (float)change);
 	}
 	fast = curves ? smaller(v, most) : v;
-	if (!(all ? near_turns_faster(w, last, i, a, b, fast, near_all(n), n) :
-		    near_turns_faster(w, last, i, a, b, fast, both, n))) {
-		turn = pass_turn(w, last, i, a, b);
+	if (!near_turns_faster(w, k, fast, both, n)) {
+		turn = pass_turn(w, k->last, k->i, k->a, k->b);
 		w->dip.firm_mm_s = pass_least(w->dip.firm_mm_s, (float)turn);
 		v = smaller(v, turn);
 	}
 	if (!curves)
-		v = smaller(v, near_arch(w, last, i, a, b, smaller(v, most),
-					 both, n));
+		v = smaller(v, near_arch(w, k, smaller(v, most), both));
 	return v;
+}
+
+/* As pass_node_mm_s(); fill @k.  Mostly all columns make the length. */
+COLUMNS_INLINE double near_node_mm_s(struct pass *w, struct joint *k,
+				     uint32_t n)
+{
+	const uint32_t both = k->a->along & k->b->along;
+
+	w->bends = 0;
+	return both == near_all(n) ? near_joint_mm_s(w, k, near_all(n), n) :
+				     near_joint_mm_s(w, k, both, n);
 }
 
 #endif /* SPEED_NEARBY_H */

@@ -443,7 +443,9 @@ double pass_turn(struct pass *w, uint32_t last, uint32_t i,
 double pass_node_mm_s(struct pass *w, uint32_t last, uint32_t i,
 		      const struct heading *a, const struct heading *b)
 {
-	return BY_COLUMNS(w->n, near_node_mm_s, w, last, i, a, b);
+	struct joint k = { .a = a, .b = b, .last = last, .i = i };
+
+	return BY_COLUMNS(w->n, near_node_mm_s, w, &k);
 }
 
 double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,

@@ -55,6 +55,7 @@ struct around {
 struct levels {
 	double at[INTERP_NAXES];
 	uint32_t n;
+	double above;			/* more than this is none of them */
 };
 
 /* The least and the most of what the segments allow along the path. */
@@ -134,6 +135,8 @@ struct bent_ways {
 	struct bent_way *at;
 	size_t n, room;
 	uint32_t last;			/* columns of the last place */
+	uint32_t behind;		/* where that ends; in the rows it is
+					 * written later */
 	bool lost;			/* there was no memory for one */
 };
 
@@ -249,6 +252,7 @@ struct pass {
 	double step_mm_s[INTERP_NAXES];	/* at a node */
 	double curl_mm_s2[INTERP_NAXES]; /* step of the acceleration there */
 	struct levels v_levels, a_levels, j_levels;
+	bool alike;			/* all can do the same */
 	struct plateau plateau;
 	double turn_least[2];		/* near_turns_faster() */
 	double a_linear_mm_s2;		/* the least of X Y Z */
@@ -435,24 +439,25 @@ static inline void pass_way_begin(struct pass *w, uint32_t i,
 void pass_way_on(struct pass *w, uint32_t i, const struct heading *a,
 		 const struct heading *b);
 
-/** pass_way_to() - what was noted last is so up to segment @behind. */
-static inline void pass_way_to(struct pass *w, uint32_t behind)
+/** pass_way_known() - no more is noted of the last place: write where it
+ *  ends. */
+static inline void pass_way_known(struct pass *w)
 {
 	struct bent_ways *k = &w->bent_ways;
 
-	for (uint32_t n = 1; n <= k->last; n++)
-		k->at[k->n - n].behind = behind;
+	for (; k->last > 0; k->last--)
+		k->at[k->n - k->last].behind = k->behind;
 }
 
 /** pass_way_end() - what was noted last says nothing of what is behind segment
  *  @behind. */
 static inline void pass_way_end(struct pass *w, uint32_t behind)
 {
-	const struct bent_ways *k = &w->bent_ways;
+	struct bent_ways *k = &w->bent_ways;
 
-	if (k->last > 0 && k->at[k->n - 1].behind > behind &&
+	if (k->last > 0 && k->behind > behind &&
 	    k->at[k->n - 1].before < behind)
-		pass_way_to(w, behind);
+		k->behind = behind;
 }
 
 /** pass_way_node() - a column of it, as if at one node. */

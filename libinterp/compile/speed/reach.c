@@ -123,10 +123,12 @@ static void soften_ways(struct pass *w, const float *v2)
 
 		columns = of_place(at, k->n - n, &behind);
 		for (uint32_t i = at->before; i < behind; i++) {
-			const float v = v2 ? sqrtf(v2[i]) : over_mm_s(w, i);
+			const float v = v2 ? v2[i] : over_mm_s(w, i);
 
 			most = v > most ? v : most;
 		}
+		if (v2)
+			most = sqrtf(most);
 		left = leave_of(w, at, columns, (double)most);
 		pass_soften_segs(w, at->before, behind, &left);
 	}
