@@ -283,10 +283,6 @@ static inline double rounding_of(const struct rig *r, int axis)
 	return rate * mm > off ? rate * mm / (rate * mm - off) : INFINITY;
 }
 
-/* In a cusp a curve bends within some pulses.  Its limits are found at places,
- * and between two of them its jerk may be so much more. */
-#define CUSP_JERK	1.25
-
 /* A stop less than 1e-9 mm ahead is met: the last bit of time is cut, and the
  * axis moves by that. */
 static inline void check_axes(const struct track *k, const struct rig *r)
@@ -295,8 +291,6 @@ static inline void check_axes(const struct track *k, const struct rig *r)
 	const bool curve = r->c.cursor.seg.kind == INTERP_CURVE;
 	const bool floored = curve && fabs(r->c.mover.v_mm_s) <
 				      2 * slowest_mm_s();
-	const bool cusp = curve && fabs(r->c.mover.v_mm_s) <
-				   4 * slowest_mm_s();
 	const double off = curve && track_stride > 1 ? CURVE_OFF_MM : 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
@@ -315,8 +309,7 @@ static inline void check_axes(const struct track *k, const struct rig *r)
 		const bool beyond =
 			fabs(a[0]) > l->a_max_mm_s2 * more + cut +
 				     4 * off / t / t ||
-			fabs(jerk) > l->j_max_mm_s3 * more *
-				     (cusp ? CUSP_JERK : 1) + 2 * cut / t +
+			fabs(jerk) > l->j_max_mm_s3 * more + 2 * cut / t +
 				     8 * off / t / t / t;
 
 		if (fabs(v[0]) > l->v_max_mm_s * more + 2 * off / t ||

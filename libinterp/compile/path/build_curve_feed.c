@@ -130,16 +130,23 @@ struct curve_look build_curve_look(struct curve_plan *p, double u)
 	return ret;
 }
 
+/* A counted axis goes by 1 at most, however far one beside it turns. */
 static bool is_near(const struct curve_plan *p, const struct curve_look *a,
 		    const struct curve_look *b)
 {
-	double size = 0, turn = 0;
+	double size = 1, turn = 0, beside = 0;
 
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
+		const double d = fabs(a->heading[k] - b->heading[k]);
+
+		if (k < p->curve.counted) {
+			turn = fmax(turn, d);
+			continue;
+		}
 		size = fmax(size, fabs(a->heading[k]));
-		turn = fmax(turn, fabs(a->heading[k] - b->heading[k]));
+		beside = fmax(beside, d);
 	}
-	return turn <= NEAR * size &&
+	return turn <= NEAR && beside <= NEAR * size &&
 	       fmax(a->mm_s, b->mm_s) <= (1 + NEAR) * fmin(a->mm_s, b->mm_s);
 }
 
