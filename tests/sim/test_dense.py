@@ -141,6 +141,26 @@ def round_lines(r, sweep, mm, decimals):
     return "\n".join(lines + ["M2", ""])
 
 
+def comb_text(step, mm):
+    """Teeth of 3 by 1 steps, in lines of @mm; None: whole."""
+    x, y, lines = 0, 0, ["G21 G90 F60000"]
+    for _ in range(5):
+        for dx, dy in (0, 3 * step), (step, 0), (0, -3 * step), (step, 0):
+            n = round(max(dx, abs(dy)) / mm) if mm else 1
+            lines += [f"G1 X{x + dx * i / n:.3f} Y{y + dy * i / n:.3f}"
+                      for i in range(1, n + 1)]
+            x, y = x + dx, y + dy
+    return "\n".join(lines + ["M2", ""])
+
+
+@pytest.mark.parametrize("step", [0.5, 1, 2])
+def test_two_corners_near_to_each_other_are_no_bend(tmp_path, step):
+    of = machine(tmp_path, {"X": (80, 1000, 20000), "Y": (80, 1000, 20000)})
+    long = dry_s(of, comb_text(step, None))
+    for mm in 0.05, 0.02, 0.01, 0.005:
+        assert dry_s(of, comb_text(step, mm)) <= GOAL * long, mm
+
+
 @pytest.mark.parametrize("r", [1, 3, 5, 20, 100])
 def test_a_circle_in_short_lines_takes_the_time_of_the_arc(tmp_path, r):
     """They leave as much of each axis for speeding up."""

@@ -95,7 +95,8 @@ static struct made wavy(const struct waves *k, double mm)
 	struct interp_diag d;
 
 	for (double at = 0; at < 20; at += mm) {
-		const double way = k->first + k->high[0] * sin(k->wave[0] * at) +
+		const double way = k->first +
+				   k->high[0] * sin(k->wave[0] * at) +
 				   k->high[1] * sin(k->wave[1] * at);
 
 		end[INTERP_X] += mm * cos(way);
@@ -301,17 +302,18 @@ static double mean_mm_s(struct made m, double from_mm, double to_mm)
 }
 
 /*
- * Y goes to and fro by @high / @wave.  What does so within half a wave, T, takes
- * a jerk of 24 / T^3 of that at least, whatever its form is; it may be off by a
- * corner and a rounding.
+ * Y goes to and fro by @high / @wave.  What does so within half a wave, T,
+ * takes a jerk of 24 / T^3 of that at least, whatever its form is; it may be
+ * off by a corner and a rounding.
  */
 static double most_mm_s(const struct waves *k)
 {
 	const double y_mm = k->high[0] / k->wave[0] - OFF_MM;
 	const double jerk = axes_machine.axis[INTERP_Y].j_max_mm_s3;
 
-	return y_mm > OFF_MM / 2 ? M_PI / k->wave[0] * cbrt(jerk / (24 * y_mm)) :
-			       INFINITY;
+	if (y_mm < OFF_MM / 2)
+		return INFINITY;
+	return M_PI / k->wave[0] * cbrt(jerk / (24 * y_mm));
 }
 
 static void try_waves(const struct waves *k, double mm)

@@ -527,10 +527,10 @@ int build_walk_may(struct interp_build *b, double points,
 	if (points <= most - (double)b->walked)
 		return 0;
 	b->again.refused = b->again.counts;
-	return interp_diag_say(diag, "curves, arcs and lines by min-switch that "
-			       "are more than %.0f lattice points together; "
-			       "fewer, or shorter ones, or arcs and lines by "
-			       "strategy simultaneous", most);
+	return interp_diag_say(diag, "curves, arcs and lines by min-switch "
+			       "that are more than %.0f lattice points "
+			       "together; fewer, or shorter ones, or arcs and "
+			       "lines by strategy simultaneous", most);
 }
 
 int build_walk(struct interp_build *b, double points,

@@ -26,6 +26,10 @@
 /* If a rounding hides no more of a bend, a wider window shows no more. */
 #define CLEAR		1.03
 
+/* A bend that is so many times what it may be in narrower windows is a corner
+ * beside them. */
+#define CORNER		2
+
 /* The columns that are looked at, and the greatest speed that is asked for. */
 struct asked {
 	uint32_t along;
@@ -264,7 +268,7 @@ static void show_bend(const struct pass *w, const struct bends *k,
 		      const struct sure *sure, struct changing *c)
 {
 	const struct weakest weakest = pass_weakest(w, sure->moves);
-	const double is = sqrt(sure->is2);
+	const double is = sqrt(sure->is2), narrower = c->on_most;
 	double share;
 
 	c->bend_most = smaller(c->bend_most, sqrt(sure->most2));
@@ -272,8 +276,9 @@ static void show_bend(const struct pass *w, const struct bends *k,
 	if (c->on_most > CLEAR * is &&
 	    leaves_less(w, &weakest, c->on_most, c->most_mm_s))
 		c->clear = false;
-	share = is > 0 ? smaller(goes_on(k, sure->is2, sure->before,
-					 sure->behind), c->on_most / is) : 0;
+	share = is > 0 && is <= CORNER * narrower ?
+			smaller(goes_on(k, sure->is2, sure->before,
+					sure->behind), c->on_most / is) : 0;
 	if (share > 0)
 		c->arc_mm_s = pass_arc_mm_s(&weakest, share * is);
 	c->v_mm_s = smaller(c->v_mm_s, c->arc_mm_s);
