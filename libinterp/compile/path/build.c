@@ -290,9 +290,10 @@ static int change_cond(struct interp_build *b,
 	return 0;
 }
 
-static inline int seg_finish(struct interp_build *b, struct interp_seg *seg,
-			     const struct interp_build_word *w,
-			     struct interp_diag *diag)
+/* Make room for a segment, and append its last node. */
+static inline int seg_begin(struct interp_build *b,
+			    const struct interp_build_word *w,
+			    struct interp_diag *diag)
 {
 	const bool same = w->cond_letter == b->cond_letter &&
 			  w->cond_number == b->cond_number &&
@@ -301,26 +302,33 @@ static inline int seg_finish(struct interp_build *b, struct interp_seg *seg,
 
 	if (err < 0)
 		return err;
-	if (seg_room(b) < 0)
-		return -ENOMEM;
+	return seg_room(b) < 0 || node_add(b) < 0 ? -ENOMEM : 0;
+}
+
+/* What all segments have; only then the path is longer. */
+static inline void seg_end(struct interp_build *b, struct interp_seg *seg,
+			   const struct interp_build_word *w)
+{
 	seg->cond = b->cond;
 	seg->line = w->line;
 	seg->s_mm = b->length_mm;
 	seg->escape = b->stand_escape;
 	if (b->off && seg->kind < INTERP_BEGIN)
 		seg->flags |= INTERP_SEG_OFF;
-	if (node_add(b) < 0)
-		return -ENOMEM;
-	*seg_add(b) = *seg;
 	b->length_mm += seg->length_mm;
-	return 0;
 }
 
 int build_seg_finish(struct interp_build *b, struct interp_seg *seg,
 		     const struct interp_build_word *w,
 		     struct interp_diag *diag)
 {
-	return seg_finish(b, seg, w, diag);
+	const int err = seg_begin(b, w, diag);
+
+	if (err < 0)
+		return err;
+	seg_end(b, seg, w);
+	*seg_add(b) = *seg;
+	return 0;
 }
 
 int build_columns(struct interp_build *b, uint32_t moved)
@@ -603,7 +611,7 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	struct walked walked = { .arg = 0 };
 	int64_t to[INTERP_NAXES];
 	struct build_measure m;
-	struct interp_seg seg;
+	struct interp_seg *seg;
 	int err;
 
 	if (w->ends)
@@ -628,8 +636,14 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	/* It is also not known how far it came. */
 	if (w->ends)
 		b->descent.axis = -1;
-	seg = line_seg(&m, &walked, w);
-	return seg_finish(b, &seg, w, diag);
+	err = seg_begin(b, w, diag);
+	if (err < 0)
+		return err;
+	/* In its place: what is stored in parts is slow to copy. */
+	seg = seg_add(b);
+	*seg = line_seg(&m, &walked, w);
+	seg_end(b, seg, w);
+	return 0;
 }
 
 int build_step(struct interp_build *b, const struct build_step *s,

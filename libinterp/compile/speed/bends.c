@@ -11,7 +11,8 @@ static struct interp_bends own_of(const struct interp_seg *s, uint32_t n)
 {
 	struct interp_bends b = INTERP_BENDS_NONE;
 
-	for (uint32_t i = 0; i < n && i < INTERP_BENDS_SEGS; i++) {
+	n = n < INTERP_BENDS_SEGS ? n : INTERP_BENDS_SEGS;
+	for (uint32_t i = 0; i < n; i++) {
 		b.a_mm_s2 = pass_least(s[i].a_mm_s2, b.a_mm_s2);
 		b.j_mm_s3 = pass_least(s[i].j_mm_s3, b.j_mm_s3);
 	}

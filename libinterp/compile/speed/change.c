@@ -76,6 +76,20 @@ static uint32_t before(const struct pass *w, uint32_t i, double mm)
 	return from;
 }
 
+/* The same, where it may be @guess nodes from there. */
+static uint32_t before_near(const struct pass *w, uint32_t i, double mm,
+			    uint32_t guess)
+{
+	const double most = w->segs[i].s_mm - mm;
+	uint32_t k = i - w->run > guess ? i - guess : w->run;
+
+	while (k > w->run && w->segs[k].s_mm > most)
+		k--;
+	while (k + 1 < i && w->segs[k + 1].s_mm <= most)
+		k++;
+	return k;
+}
+
 /* The first node of the run that is at least @mm behind node @i, or its last
  * one.  It may be @guess nodes from there. */
 static uint32_t behind(const struct pass *w, uint32_t i, double mm,
@@ -95,7 +109,7 @@ static uint32_t behind(const struct pass *w, uint32_t i, double mm,
 static void begin(const struct pass *w, uint32_t i, uint32_t along, double mm,
 		  struct changing *c)
 {
-	const uint32_t b = before(w, i, mm), a = before(w, b, mm);
+	const uint32_t b = before(w, i, mm), a = before_near(w, b, mm, i - b);
 
 	c->node[0] = i;
 	c->node[1] = behind(w, i, mm, i - b);

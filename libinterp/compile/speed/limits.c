@@ -212,6 +212,16 @@ static void note_soft(struct pass_soft *k, double a, double j)
 	k->j_most = larger(j, k->j_most);
 }
 
+/* A segment has that along the path. */
+static inline void set_soft(struct pass *w, struct interp_seg *s, double a,
+			    double j)
+{
+	s->a_mm_s2 = soft(a, &w->a_levels);
+	s->j_mm_s3 = soft(j, &w->j_levels);
+	if (s->a_mm_s2 < INFINITY && s->j_mm_s3 < INFINITY)
+		note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
+}
+
 /* Along the path, what its axes leave. */
 COLUMNS_INLINE void soften_seg(struct pass *w, struct interp_seg *s,
 			    const struct along *left, const struct rates *r,
@@ -229,10 +239,24 @@ COLUMNS_INLINE void soften_seg(struct pass *w, struct interp_seg *s,
 		j = smaller(j,
 			    (bends ? left->j : 1) * w->j_mm_s3[k] / r->by[k]);
 	}
-	s->a_mm_s2 = soft(a, &w->a_levels);
-	s->j_mm_s3 = soft(j, &w->j_levels);
-	if (s->a_mm_s2 < INFINITY && s->j_mm_s3 < INFINITY)
-		note_soft(&w->soft, (double)s->a_mm_s2, (double)s->j_mm_s3);
+	set_soft(w, s, a, j);
+}
+
+/* The same of a line.  Of axes that are alike the one that moves most leaves
+ * least. */
+COLUMNS_INLINE void soften_line(struct pass *w, struct interp_seg *s,
+				const struct rates *r, uint32_t n)
+{
+	const struct along left = { 1, 1, INFINITY, INFINITY };
+	double most = 0;
+
+	if (!w->alike) {
+		soften_seg(w, s, &left, r, n);
+		return;
+	}
+	for (uint32_t k = 0; k < n; k++)
+		most = larger(r->by[k], most);
+	set_soft(w, s, w->gate.a_mm_s2 / most, w->gate.jerk_mm_s3 / most);
 }
 
 /*
@@ -292,11 +316,10 @@ static double limit_bend(struct pass *w, uint32_t i, const struct headings *h)
 COLUMNS_INLINE double limit_line(struct pass *w, uint32_t i,
 				 const struct heading *h, uint32_t n)
 {
-	const struct along left = { 1, 1, INFINITY, INFINITY };
 	struct rates rates = { .bends = 0 };
 
 	near_rates(w, i, h, &rates, near_usual(n), n);
-	soften_seg(w, &w->segs[i], &left, &rates, n);
+	soften_line(w, &w->segs[i], &rates, n);
 	w->top_mm_s[1] = rates.top_mm_s;
 	return larger((double)w->segs[i].feed_max_mm_s, rates.v_mm_s);
 }
@@ -305,12 +328,11 @@ COLUMNS_INLINE double limit_line(struct pass *w, uint32_t i,
 COLUMNS_INLINE double limit_long(struct pass *w, uint32_t i,
 				 const struct headings *h, uint32_t n)
 {
-	const struct along left = { 1, 1, INFINITY, INFINITY };
 	struct interp_seg *s = &w->segs[i];
 	struct rates rates;
 
 	near_other_rates(s, h, &rates, n);
-	soften_seg(w, s, &left, &rates, n);
+	soften_line(w, s, &rates, n);
 	return (double)s->feed_max_mm_s;
 }
 
@@ -500,10 +522,11 @@ COLUMNS_INLINE void walk_nodes(struct pass *w, uint32_t known, uint32_t to,
 		struct interp_seg *s = &w->segs[i];
 
 		s->node_mm_s = INFINITY;
-		s->a_mm_s2 = s->j_mm_s3 = INFINITY;
 		s->flags &= (uint8_t)~INTERP_SEG_STAND;
-		if (s->kind >= INTERP_BEGIN)
+		if (s->kind >= INTERP_BEGIN) {
+			s->a_mm_s2 = s->j_mm_s3 = INFINITY;
 			continue;
+		}
 		if (i >= w->run_end)
 			next_run(w, i, known);
 		heading_find(&w->ways, i, is, n);

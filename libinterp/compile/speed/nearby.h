@@ -81,6 +81,18 @@ COLUMNS_INLINE void near_way(const struct pass *w, uint32_t from, uint32_t to,
 				 ret->per_mm;
 }
 
+/* Are the next nodes to both sides far enough away, and ahead of those of the
+ * node before? */
+static inline bool near_look_next(const struct pass *w, uint32_t i,
+				  const struct around *k)
+{
+	const struct interp_seg *s = &w->segs[i];
+
+	return k->ahead <= i + 1 && k->behind < i && w->run < i &&
+	       i < w->run_end && s->s_mm - s[-1].s_mm >= k->mm &&
+	       s[1].s_mm - s->s_mm >= k->mm;
+}
+
 /* Not over a place from which the length is in other columns. */
 static inline void near_look(const struct pass *w, uint32_t i, struct around *k)
 {
@@ -117,7 +129,12 @@ COLUMNS_INLINE void near_rates(struct pass *w, uint32_t i,
 	struct peaks peaks;
 
 	peaks.v_mm_s = INFINITY;
-	near_look(w, i, k);
+	if (near_look_next(w, i, k)) {
+		k->behind = i - 1;
+		k->ahead = i + 1;
+	} else {
+		near_look(w, i, k);
+	}
 	near_way(w, k->behind, k->ahead, &c, n);
 	peaks.around = &c;
 	if (beside)
