@@ -42,7 +42,7 @@ static char *put_int(char *p, int64_t v)
 /* cycle,line,X,...,V: printf would be slow for a million of these a second. */
 static void put_point(FILE *f, const struct cycle *c)
 {
-	char row[160], *p = put_int(row, (int64_t)c->totals.cycles);
+	char row[160], *p = put_int(row, (int64_t)c->count);
 
 	*p++ = ',';
 	p = put_int(p, c->cursor.seg.line);
@@ -125,7 +125,7 @@ void record_point(void *arg, const struct cycle *c)
 
 static double time_s(const struct cycle *c)
 {
-	return (double)c->totals.cycles * (double)c->config.period_ns * 1e-9;
+	return (double)c->count * (double)c->config.period_ns * 1e-9;
 }
 
 /* How the simulated gap was; nothing if there is no gap. */

@@ -67,7 +67,7 @@ static void add_path(json_t *o, const struct sim_run *r)
 static void add_cut(json_t *o, const struct sim_run *r)
 {
 	const struct cycle_totals *t = &r->cycle.totals;
-	const double s = seconds(&r->cycle, t->cycles);
+	const double s = seconds(&r->cycle, r->cycle.count);
 
 	add_int(o, "retracts", t->retracts);
 	add_real(o, "retract_mm_max", t->retract_mm_max);
@@ -118,8 +118,8 @@ static json_t *report(const struct sim_run *r)
 	if (c->fault.first != FAULT_NONE)
 		json_object_set_new(o, "fault",
 				    json_string(fault_name(c->fault.first)));
-	add_int(o, "cycles", c->totals.cycles);
-	add_real(o, "virtual_s", seconds(c, c->totals.cycles));
+	add_int(o, "cycles", c->count);
+	add_real(o, "virtual_s", seconds(c, c->count));
 	add_real(o, "wall_s", r->result.wall_s);
 	add_path(o, r);
 	if (!c->config.dry_run)
@@ -130,7 +130,7 @@ static json_t *report(const struct sim_run *r)
 	}
 	add_conditions(o, r);
 	add_real(o, "compile_lines_s", r->job.compile_lines_s);
-	add_real(o, "cycles_s", (double)c->totals.cycles / r->result.wall_s);
+	add_real(o, "cycles_s", (double)c->count / r->result.wall_s);
 	return o;
 }
 
@@ -179,7 +179,7 @@ void report_print(const struct sim_run *r, FILE *f)
 {
 	const struct cycle *c = &r->cycle;
 	const struct cycle_totals *t = &c->totals;
-	const double s = seconds(c, t->cycles);
+	const double s = seconds(c, c->count);
 
 	fprintf(f, "outcome    %s", r->result.outcome);
 	if (c->fault.first != FAULT_NONE)
@@ -188,7 +188,7 @@ void report_print(const struct sim_run *r, FILE *f)
 		r->job.program.head->length_mm, motions(&r->job.program),
 		r->job.program.head->lines);
 	fprintf(f, "time       %.3f s virtual, %.3f s here (%.3g cycles/s)\n",
-		s, r->result.wall_s, (double)t->cycles / r->result.wall_s);
+		s, r->result.wall_s, (double)c->count / r->result.wall_s);
 	if (c->config.dry_run)
 		return;
 	fprintf(f, "erosion    %.1f s; removed %.3f mm3, wear %.4f mm, "

@@ -26,13 +26,8 @@ bool run_interrupted(void)
 	return interrupted;
 }
 
+/* Also while the job is held, and on a way back. */
 static double virtual_s(const struct cycle *c)
-{
-	return (double)c->totals.cycles * (double)c->config.period_ns * 1e-9;
-}
-
-/* The time that --limit-s counts: the limit also ends a job that is held. */
-static double passed_s(const struct cycle *c)
 {
 	return (double)c->count * (double)c->config.period_ns * 1e-9;
 }
@@ -152,7 +147,7 @@ static bool over(struct sim_run *r)
 		return true;
 	}
 	if (interrupted ||
-	    (r->o->limit_s > 0 && passed_s(c) >= r->o->limit_s)) {
+	    (r->o->limit_s > 0 && virtual_s(c) >= r->o->limit_s)) {
 		r->result.outcome = "limit";
 		return true;
 	}

@@ -26,6 +26,17 @@ def test_another_seed_gives_other_files(tmp_path):
     assert a[0] != b[0] and a[1] != b[1]
 
 
+def test_time_goes_on_there_and_back(tmp_path):
+    name = tmp_path / "t.csv"
+    text = "G21 G90 F600\nG1 X3\nM2\n"
+    once = report("--dry-run", text=text)["cycles"]
+    r = report("--dry-run", "--there-and-back", "--trace", name, text=text)
+    at = [round(float(row.split(",")[0]) * 1e3)
+          for row in name.read_text().splitlines()[1:]]
+    assert at == list(range(1, r["cycles"] + 1))
+    assert r["cycles"] > 2.1 * once
+
+
 # -- The report ----------------------------------------------------------------
 
 ALWAYS = {
