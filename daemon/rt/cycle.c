@@ -136,8 +136,13 @@ static void stand_held(struct cycle *c)
  * carry the limits of that move over the action. */
 static void stand_before(struct cycle *c)
 {
-	if (c->mover.kind != MOVER_NO_PLAN)
-		mover_set(&c->mover, 0);
+	const struct interp_scurve_limits l = mover_curve(&c->mover.l);
+	struct mover *m = &c->mover;
+
+	if (m->kind != MOVER_NO_PLAN &&
+	    fabs(interp_scurve_way_mm(&l, m->v_mm_s, m->a_mm_s2, 0)) <=
+		    2 * MOVER_ONTO_MM)
+		mover_set(m, 0);
 }
 
 /* A held job does no action; it stands before the action.  A way back that was
