@@ -228,13 +228,15 @@ COLUMNS_INLINE void soften_seg(struct pass *w, struct interp_seg *s,
 }
 
 /*
- * The ceiling of an arc, @v_mm_s at most, by the axes of its bend; and what it
- * leaves at that speed.  Along and across are square to each other.
+ * The ceiling of an arc, @v_mm_s at most, by the axes that move; and what it
+ * leaves at that speed, as a share of what those do that bend.  Along and
+ * across are square to each other.
  */
 static double round_bend(const struct pass *w, const struct headings *h,
-			 double v_mm_s, struct along *ret)
+			 uint32_t bends, double v_mm_s, struct along *ret)
 {
 	const double r = h->bend_mm;
+	const double own = pass_weakest(w, bends).a_mm_s2;
 	double a = INFINITY, j = INFINITY, v, across, both, speed_up;
 
 	for (uint32_t k = 0; k < w->n; k++) {
@@ -247,11 +249,11 @@ static double round_bend(const struct pass *w, const struct headings *h,
 		    pass_round_mm_s(r, INTERP_BEND_ACROSS * a,
 				    INTERP_ARC_JERK_ROUND * j));
 	across = v * v / (r * a);
-	speed_up = smaller(sqrt(1 - across * across) * a,
-			INTERP_ARC_JERK_BOTH * j * r / (3 * v));
+	speed_up = smaller(sqrt(1 - across * across) * own,
+			   INTERP_ARC_JERK_BOTH * j * r / (3 * v));
 	both = 3 * v * speed_up / (r * j);
 	*ret = (struct along) {
-		speed_up / a, sqrt(1 - both * both) - v * v * v / (r * r * j),
+		speed_up / own, sqrt(1 - both * both) - v * v * v / (r * r * j),
 		INFINITY, INFINITY
 	};
 	return v / h->share;
@@ -274,7 +276,7 @@ static double limit_bend(struct pass *w, uint32_t i, const struct headings *h)
 		left.j_mm_s3 = w->p->pieces[s->arg].j_mm_s3;
 		memset(rates.by, 0, sizeof(rates.by));
 	} else if (h->bend_mm > 0) {
-		v = round_bend(w, h, v, &left);
+		v = round_bend(w, h, rates.bends, v, &left);
 	}
 	BY_COLUMNS(w->n, soften_seg, w, s, &left, &rates);
 	return v;
