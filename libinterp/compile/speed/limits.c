@@ -261,8 +261,8 @@ COLUMNS_INLINE void soften_line(struct pass *w, struct interp_seg *s,
 
 /*
  * The ceiling of an arc, @v_mm_s at most, by the axes that move; and what it
- * leaves at that speed, as a share of what those do that bend.  Along and across
- * are square to each other.
+ * leaves at that speed, as a share of what those do that bend.  Along and
+ * across are square to each other.
  */
 static double round_bend(const struct pass *w, const struct headings *h,
 			 uint32_t bends, double v_mm_s, struct along *ret)
