@@ -136,7 +136,8 @@ static inline uint16_t softer_behind(const struct interp_seg *s, uint32_t i)
 	return m == i ? 0 : hop_of(m);
 }
 
-/* Are they moved over in the same way, one cut as fast as the other? */
+/* Are they moved over in the same way, one cut as fast as the other?  Equal
+ * feeds have equal bits, too. */
 static inline bool is_alike(const struct interp_seg *s,
 			    const struct interp_seg *as)
 {

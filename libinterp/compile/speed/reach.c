@@ -122,6 +122,7 @@ static void soften_ways(struct pass *w, const float *v2)
 		float most = 0;
 
 		columns = of_place(at, k->n - n, &behind);
+		/* Of squares the root of the most is enough. */
 		for (uint32_t i = at->before; i < behind; i++) {
 			const float v = v2 ? v2[i] : over_mm_s(w, i);
 
