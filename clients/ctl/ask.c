@@ -83,11 +83,10 @@ static void typed(char to[64], const struct ctl *c,
 		 part ? q->verb + n + 1 : "");
 }
 
-int ctl_ask(struct ctl *c, const struct talk_question *q,
-	    struct talk_answer *ret)
+/* @err: of asking; @ret: the answer, if it is 0. */
+static int answered(const struct ctl *c, const struct talk_question *q, int err,
+		    struct talk_answer *ret)
 {
-	int err = c->talk ? talk_ask(c->talk, q, c->timeout_s, ret) :
-			    -ETIMEDOUT;
 	char verb[64];
 	int code;
 
@@ -101,6 +100,15 @@ int ctl_ask(struct ctl *c, const struct talk_question *q,
 	code = ret->code;
 	talk_answer_free(ret);
 	return code;
+}
+
+int ctl_ask(struct ctl *c, const struct talk_question *q,
+	    struct talk_answer *ret)
+{
+	const int err = c->talk ? talk_ask(c->talk, q, c->timeout_s, ret) :
+				  -ETIMEDOUT;
+
+	return answered(c, q, err, ret);
 }
 
 /* For a verb whose answer is one word of success. */
@@ -457,26 +465,97 @@ static void tell_progress(double since_s, size_t jobs, bool end)
 		fprintf(stderr, "\r%zu jobs", jobs);
 }
 
+/*
+ * The next page is asked for before this one is read, so that both sides work
+ * at the same time.  It begins after the last job of this one; which one that
+ * is, is guessed from its text and compared when it has been read.
+ */
+struct ahead {
+	char job[TALK_WORD_MAX];	/* "": nothing was asked */
+	bool over;
+	int err;
+	struct talk_answer answer;
+};
+
+static void on_ahead(void *arg, int err, const struct talk_ack *a)
+{
+	struct ahead *h = arg;
+
+	h->over = true;
+	h->err = err;
+	if (err < 0)
+		return;
+	h->answer = (struct talk_answer) {
+		.code = a->code, .reason = strdup(a->reason),
+		.body = strdup(a->body),
+	};
+	if (!h->answer.reason || !h->answer.body)
+		h->err = -ENOMEM;
+}
+
+static void guess_last(const char *body, char ret[TALK_WORD_MAX])
+{
+	static const char key[] = "\"job\":\"";
+	const char *last = NULL;
+	size_t n;
+
+	for (const char *at = body; (at = strstr(at, key)); last = at)
+		at += sizeof(key) - 1;
+	n = last ? strcspn(last, "\"\\") : 0;
+	snprintf(ret, TALK_WORD_MAX, "%.*s", (int)n, last ? last : "");
+}
+
+static void ahead_ask(struct ahead *h, struct ctl *c, const char *verb,
+		      const char *body)
+{
+	*h = (struct ahead) { .over = false };
+	guess_last(body, h->job);
+	if (*h->job && talk_send(c->talk, &(struct talk_question) {
+			.verb = verb, .job = h->job,
+		}, c->timeout_s, on_ahead, h) < 0)
+		*h->job = '\0';
+}
+
+/* Its answer, if it was the question. */
+static int ahead_answer(struct ahead *h, struct ctl *c,
+			const struct talk_question *q, struct talk_answer *ret)
+{
+	while (*h->job && !h->over && !talk_interrupted())
+		talk_wait(c->talk, 50);
+	if (!*h->job || !q || strcmp(h->job, q->job) != 0) {
+		talk_answer_free(&h->answer);
+		return q ? ctl_ask(c, q, ret) : 0;
+	}
+	*ret = h->answer;
+	return answered(c, q, h->over ? h->err : -EINTR, ret);
+}
+
 int ctl_pages(struct ctl *c, const char *verb,
 	      int (*take)(void *arg, json_t *page), void *arg)
 {
 	struct talk_question q = { .verb = verb };
-	json_t *page = NULL, *before;	/* q.job is a word of it */
 	const double since_s = talk_now_s();
-	size_t n, all = 0;
-	int err;
+	json_t *page = NULL;		/* q.job is a word of it */
+	struct ahead ahead = { .over = false };
+	struct talk_answer a;
+	size_t n = 0, all = 0;
+	int err = ctl_ask(c, &q, &a);
 
-	do {
-		before = page;
-		page = NULL;
-		err = ctl_ask_json(c, &q, &page);
-		json_decref(before);
-		if (err == 0)
-			err = take(arg, page);
+	while (err == 0) {
+		ahead_ask(&ahead, c, verb, a.body);
+		json_decref(page);
+		page = json_loads(a.body, 0, NULL);
+		talk_answer_free(&a);
+		err = page ? take(arg, page) : EX_PROTOCOL;
 		n = json_array_size(page);
 		tell_progress(since_s, all += n, n == 0);
-		q.job = ctl_text_of(json_array_get(page, n ? n - 1 : 0), "job");
-	} while (err == 0 && n > 0);
+		if (err || n == 0)
+			break;
+		q.job = ctl_text_of(json_array_get(page, n - 1), "job");
+		err = ahead_answer(&ahead, c, &q, &a);
+		ahead.job[0] = '\0';
+	}
+	ahead_answer(&ahead, c, NULL, NULL);
 	json_decref(page);
 	return err;
 }

@@ -8,13 +8,15 @@
 
 #include "file.h"
 
-#include <archive.h>
-#include <archive_entry.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
 #include <sysexits.h>
+#include <tar.h>
 #include <time.h>
+#include <unistd.h>
+#include <zlib.h>
 
 static const char what_is_not_in_it[] =
 	"No keys, no passwords, no users of the panel, no programs of jobs.";
@@ -22,7 +24,7 @@ static const char what_is_not_in_it[] =
 struct pack {
 	struct support s;
 	struct ctl_file file;
-	struct archive *archive;
+	gzFile gz;
 	char folder[96];
 	char path[128];			/* if none was named */
 	time_t now;
@@ -67,23 +69,63 @@ static void fill_readme(const struct pack *p, struct support_text *to)
 			    support_files[i].what);
 }
 
-/* -- The archive ----------------------------------------------------------- */
+/* -- The archive: POSIX ustar, packed by gzip ------------------------------ */
+
+#define BLOCK	512
+
+/* The head of a file in it, as POSIX has it; numbers are octal digits. */
+struct head {
+	char name[100], mode[8], uid[8], gid[8], size[12], mtime[12];
+	char sum[8], type, linkname[100], magic[TMAGLEN], version[TVERSLEN];
+	char uname[32], gname[32], devmajor[8], devminor[8], prefix[155];
+	char fill[12];
+};
+
+_Static_assert(sizeof(struct head) == BLOCK, "a head is one block");
+
+static void fill_head(const struct pack *p, const char *name, size_t bytes,
+		      struct head *h)
+{
+	unsigned int sum = 0;
+
+	*h = (struct head) {
+		.mode = "0000644", .uid = "0000000", .gid = "0000000",
+		.sum = { ' ', ' ', ' ', ' ', ' ', ' ', ' ', ' ' },
+		.type = REGTYPE, .magic = TMAGIC,
+		.devmajor = "0000000", .devminor = "0000000",
+	};
+	memcpy(h->version, TVERSION, TVERSLEN);
+	snprintf(h->name, sizeof(h->name), "%s", name);
+	snprintf(h->prefix, sizeof(h->prefix), "%s", p->folder);
+	snprintf(h->size, sizeof(h->size), "%011zo", bytes);
+	snprintf(h->mtime, sizeof(h->mtime), "%011llo",
+		 (unsigned long long)p->now);
+	for (size_t i = 0; i < sizeof(*h); i++)
+		sum += ((const unsigned char *)h)[i];
+	snprintf(h->sum, sizeof(h->sum), "%06o", sum);
+}
 
 static int failed(const struct pack *p)
 {
-	fprintf(stderr, "edmctl: %s: %s\n", p->file.path,
-		archive_error_string(p->archive));
+	fprintf(stderr, "edmctl: %s: %s\n", p->file.path, strerror(errno));
 	return EX_IOERR;
 }
 
 static int pack_open(struct pack *p)
 {
-	p->archive = archive_write_new();
-	if (!p->archive)
-		return EX_SOFTWARE;
-	archive_write_add_filter_gzip(p->archive);
-	archive_write_set_format_pax_restricted(p->archive);
-	if (archive_write_open_FILE(p->archive, p->file.f) == ARCHIVE_OK)
+	const int fd = dup(fileno(p->file.f));
+
+	p->gz = fd < 0 ? NULL : gzdopen(fd, "w");
+	if (p->gz)
+		return 0;
+	close(fd);
+	return failed(p);
+}
+
+static int pack_bytes(struct pack *p, const void *at, size_t bytes)
+{
+	/* zlib takes 0 bytes for an error. */
+	if (bytes == 0 || gzfwrite(at, bytes, 1, p->gz) == 1)
 		return 0;
 	return failed(p);
 }
@@ -91,21 +133,30 @@ static int pack_open(struct pack *p)
 static int pack_text(struct pack *p, const char *name,
 		     const struct support_text *t)
 {
-	struct archive_entry *e = archive_entry_new();
-	char path[200];
-	int err = 0;
+	static const char zeros[BLOCK];
+	struct head h;
+	int err;
 
-	snprintf(path, sizeof(path), "%s/%s", p->folder, name);
-	archive_entry_set_pathname(e, path);
-	archive_entry_set_size(e, (la_int64_t)t->bytes);
-	archive_entry_set_filetype(e, AE_IFREG);
-	archive_entry_set_perm(e, 0644);
-	archive_entry_set_mtime(e, p->now, 0);
-	if (archive_write_header(p->archive, e) != ARCHIVE_OK ||
-	    archive_write_data(p->archive, t->at, t->bytes) !=
-	    (la_ssize_t)t->bytes)
+	fill_head(p, name, t->bytes, &h);
+	err = pack_bytes(p, &h, sizeof(h));
+	if (err == 0)
+		err = pack_bytes(p, t->at, t->bytes);
+	if (err == 0)
+		err = pack_bytes(p, zeros, -t->bytes % BLOCK);
+	return err;
+}
+
+/* Two blocks of zeros are the end. */
+static int pack_close(struct pack *p, int err)
+{
+	static const char zeros[2 * BLOCK];
+
+	if (!p->gz)
+		return err;
+	if (err == 0)
+		err = pack_bytes(p, zeros, sizeof(zeros));
+	if (gzclose(p->gz) != Z_OK && err == 0)
 		err = failed(p);
-	archive_entry_free(e);
 	return err;
 }
 
@@ -135,11 +186,7 @@ static int pack_all(struct pack *p)
 	free(readme.at);
 	for (int i = 0; i < support_nfiles && err == 0; i++)
 		err = pack_one(p, i);
-	if (p->archive && archive_write_close(p->archive) != ARCHIVE_OK &&
-	    err == 0)
-		err = failed(p);
-	archive_write_free(p->archive);
-	return err;
+	return pack_close(p, err);
 }
 
 /* -- The verb -------------------------------------------------------------- */

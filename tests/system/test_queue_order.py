@@ -61,7 +61,9 @@ def test_lines_of_a_job_are_told(machine):
 def test_a_queue_longer_than_an_answer_is_listed_whole(machine):
     c = machine.client
     for job in ("a", "b"):
-        assert c.submit(rig.QUICK_JOB, job, hold=True).code == 0
+        # A name that looks like the end of a page.
+        assert c.submit(rig.QUICK_JOB, job, name='","job":"a',
+                        hold=True).code == 0
     c.status_where(lambda s: s.job == "a" and s.job_state == "ready")
     rig.fill_queue(machine, "b", 500)
     wanted = ["a", "b"] + [f"job-{i:03}" for i in range(500)]
