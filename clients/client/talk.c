@@ -551,17 +551,24 @@ int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
 	return 0;
 }
 
+int talk_answer_copy(struct talk_answer *ret, const struct talk_ack *a)
+{
+	*ret = (struct talk_answer) {
+		.code = a->code, .reason = strdup(a->reason),
+		.body = strdup(a->body),
+	};
+	if (ret->reason && ret->body)
+		return 0;
+	talk_answer_free(ret);
+	return -ENOMEM;
+}
+
 static void on_asked(void *arg, int err, const struct talk_ack *a)
 {
 	struct asking *asking = arg;
 
 	asking->over = true;
-	asking->err = err;
-	if (err < 0)
-		return;
-	asking->ret->code = a->code;
-	asking->ret->reason = strdup(a->reason);
-	asking->ret->body = strdup(a->body);
+	asking->err = err < 0 ? err : talk_answer_copy(asking->ret, a);
 }
 
 /* The service refuses us: that is an answer, too. */

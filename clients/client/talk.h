@@ -129,7 +129,7 @@ const char *talk_why(const struct talk *t);
 /**
  * talk_ask() - ask until there is an answer, for at most @timeout_s.
  *
- * Return: 0, -ETIMEDOUT, -EAGAIN, or -EINTR if talk_interrupted().
+ * Return: 0, -ETIMEDOUT, -EAGAIN, -ENOMEM, or -EINTR if talk_interrupted().
  */
 int talk_ask(struct talk *t, const struct talk_question *q, double timeout_s,
 	     struct talk_answer *ret);
@@ -150,6 +150,9 @@ void talk_step(struct talk *t);
 
 /* @err: 0; -ETIMEDOUT not answered: it may have been done, or not. */
 typedef void (*talk_answer_fn)(void *arg, int err, const struct talk_ack *a);
+
+/** talk_answer_copy() - keep it beyond the call.  Return: 0, -ENOMEM. */
+int talk_answer_copy(struct talk_answer *ret, const struct talk_ack *a);
 
 /**
  * talk_send() - ask; talk_step() or talk_wait() will call @fn once.

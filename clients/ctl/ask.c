@@ -482,15 +482,7 @@ static void on_ahead(void *arg, int err, const struct talk_ack *a)
 	struct ahead *h = arg;
 
 	h->over = true;
-	h->err = err;
-	if (err < 0)
-		return;
-	h->answer = (struct talk_answer) {
-		.code = a->code, .reason = strdup(a->reason),
-		.body = strdup(a->body),
-	};
-	if (!h->answer.reason || !h->answer.body)
-		h->err = -ENOMEM;
+	h->err = err < 0 ? err : talk_answer_copy(&h->answer, a);
 }
 
 static void guess_last(const char *body, char ret[TALK_WORD_MAX])
