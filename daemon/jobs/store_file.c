@@ -242,7 +242,8 @@ static int check(struct store *s, sqlite3 *db)
 	return err;
 }
 
-int store_file_probe(const struct store *s)
+/* A file of so many bytes, which is removed at once. */
+static int try_file(const struct store *s, int64_t bytes, bool sync)
 {
 	char path[600] = "";	/* all of it is written */
 	int fd, err = 0;
@@ -251,11 +252,25 @@ int store_file_probe(const struct store *s)
 	fd = open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
 	if (fd < 0)
 		return -errno;
-	if (write(fd, path, sizeof(path)) < 0 || fsync(fd) < 0)
+	if (write(fd, path, sizeof(path)) < 0 || (sync && fsync(fd) < 0))
 		err = -errno;
+	if (err == 0 && bytes > 0)
+		err = -posix_fallocate(fd, 0, (off_t)bytes);
 	close(fd);
 	unlink(path);
+	return err;
+}
+
+int store_file_probe(const struct store *s)
+{
+	const int err = try_file(s, 0, true);
+
 	return err ? err : -EIO;
+}
+
+int store_file_room(const struct store *s, int64_t bytes)
+{
+	return try_file(s, bytes, false);
 }
 
 static int open_once(struct store *s, sqlite3 **ret)

@@ -4,12 +4,10 @@
 
 #include "jobs_log.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define KEPT_MAX	4096
 #define TRY_US		2000000
 
 const char *store_why(const struct store *s)
@@ -32,169 +30,6 @@ const char *store_why(const struct store *s)
 	}
 }
 
-/* -- Statements with their values ----------------------------------------- */
-
-static struct store_write *write_new(const char *sql, enum store_keep keep,
-				     const char *kinds, va_list ap)
-{
-	struct store_write *w = calloc(1, sizeof(*w));
-	const char *text;
-
-	/* If there is no memory for a row, there is none for the service. */
-	if (!w)
-		abort();
-	w->sql = sql;
-	w->keep = keep;
-	w->key = -1;
-	for (; *kinds; kinds++, w->n++) {
-		struct store_value *v = &w->v[w->n];
-
-		v->kind = (char)tolower((unsigned char)*kinds);
-		if (v->kind != *kinds)
-			w->key = w->n;
-		if (v->kind == 'i') {
-			v->i = va_arg(ap, int64_t);
-		} else if (v->kind == 'd') {
-			v->d = va_arg(ap, double);
-		} else {
-			text = va_arg(ap, const char *);
-			v->s = text ? strdup(text) : NULL;
-		}
-	}
-	return w;
-}
-
-static void write_free(struct store_write *w)
-{
-	for (int i = 0; i < w->n; i++)
-		if (w->v[i].kind == 's')
-			free(w->v[i].s);
-	free(w);
-}
-
-static struct store_write *writes_pop(struct store_writes *l)
-{
-	struct store_write *w = l->first;
-
-	if (!w)
-		return NULL;
-	l->first = w->next;
-	if (!l->first)
-		l->last = &l->first;
-	l->n--;
-	return w;
-}
-
-void store_writes_free(struct store_writes *l)
-{
-	struct store_write *w;
-
-	while ((w = writes_pop(l)))
-		write_free(w);
-}
-
-static void writes_add(struct store_writes *l, struct store_write *w)
-{
-	if (!l->last)
-		l->last = &l->first;
-	w->next = NULL;
-	*l->last = w;
-	l->last = &w->next;
-	l->n++;
-}
-
-static void writes_move(struct store_writes *to, struct store_writes *from)
-{
-	struct store_write *w;
-
-	while ((w = writes_pop(from)))
-		writes_add(to, w);
-}
-
-static void writes_take_out(struct store_writes *l, struct store_write **at)
-{
-	struct store_write *w = *at;
-
-	*at = w->next;
-	if (l->last == &w->next)
-		l->last = at;
-	l->n--;
-	write_free(w);
-}
-
-static bool same_row(const struct store_write *a, const struct store_write *b)
-{
-	const struct store_value *x, *y;
-
-	if (a->sql != b->sql || a->key < 0)
-		return false;
-	x = &a->v[a->key];
-	y = &b->v[b->key];
-	return x->kind == 'i' ? x->i == y->i :
-	       x->s && y->s && strcmp(x->s, y->s) == 0;
-}
-
-/* The oldest entry that may be dropped makes room. */
-static void keep_room(struct store *s)
-{
-	struct store_write **at = &s->kept.first;
-
-	while (*at && (*at)->keep != STORE_MAY_GO)
-		at = &(*at)->next;
-	if (!*at)
-		return;
-	writes_take_out(&s->kept, at);
-	s->dropped++;
-}
-
-/* Keep @w, and drop the entries that it replaces. */
-static void keep(struct store *s, struct store_write *w)
-{
-	for (struct store_write **at = &s->kept.first; *at;) {
-		if (same_row(*at, w))
-			writes_take_out(&s->kept, at);
-		else
-			at = &(*at)->next;
-	}
-	if (s->kept.n + s->brought.n >= KEPT_MAX)
-		keep_room(s);
-	writes_add(&s->kept, w);
-}
-
-static void bind_all(sqlite3_stmt *q, const struct store_write *w)
-{
-	for (int i = 0; i < w->n; i++) {
-		const struct store_value *v = &w->v[i];
-
-		if (v->kind == 'i')
-			sqlite3_bind_int64(q, i + 1, v->i);
-		else if (v->kind == 'd')
-			sqlite3_bind_double(q, i + 1, v->d);
-		else
-			sqlite3_bind_text(q, i + 1, v->s, -1, SQLITE_TRANSIENT);
-	}
-}
-
-/* Run it up to its first row.  Return: SQLITE_ROW, SQLITE_DONE, or why not. */
-static int begin(sqlite3 *db, const struct store_write *w, sqlite3_stmt **ret)
-{
-	int rc = sqlite3_prepare_v2(db, w->sql, -1, ret, NULL);
-
-	if (rc != SQLITE_OK)
-		return rc;
-	bind_all(*ret, w);
-	return sqlite3_step(*ret);
-}
-
-static int carry_out(sqlite3 *db, const struct store_write *w)
-{
-	sqlite3_stmt *q = NULL;
-	int rc = begin(db, w, &q);
-
-	sqlite3_finalize(q);
-	return rc == SQLITE_ROW || rc == SQLITE_DONE ? SQLITE_OK : rc;
-}
-
 /* -- From the disk to memory, and back ------------------------------------ */
 
 static void tell_degraded(const struct store *s)
@@ -204,28 +39,51 @@ static void tell_degraded(const struct store *s)
 		  store_why(s), s->path);
 }
 
+/* A disk that is full can be read on. */
+static void go_over(struct store *s, bool is_full)
+{
+	sqlite3 *disk = s->db;
+
+	if (disk && !sqlite3_get_autocommit(disk))
+		sqlite3_exec(disk, "ROLLBACK", NULL, NULL, NULL);
+	if (is_full && disk && store_over_begin(s))
+		return;
+	s->db = store_file_copy(s, disk);
+	sqlite3_close_v2(disk);
+}
+
+void store_over_failed(struct store *s, int rc)
+{
+	const int err = store_file_errno(s->db, rc);
+
+	s->over = false;
+	s->dropped += s->spared;
+	s->spared = 0;
+	s->err = err == -EIO ? store_file_probe(s) : err;
+	/* Only a commit is refused because the disk is full. */
+	go_over(s, err == -ENOSPC);
+	for (const struct store_write *w = s->kept.first; w; w = w->next)
+		store_write_do(s->db, w);
+}
+
 void store_degrade(struct store *s, int err)
 {
 	struct store_write *w;
-	sqlite3 *disk = s->db;
 
 	if (s->in_memory)
 		return;
-	if (disk && !sqlite3_get_autocommit(disk))
-		sqlite3_exec(disk, "ROLLBACK", NULL, NULL, NULL);
-	s->db = store_file_copy(s, disk);
-	sqlite3_close_v2(disk);
 	s->in_memory = true;
 	s->err = err == -EIO ? store_file_probe(s) : err;
 	s->together = false;
+	go_over(s, s->err == -ENOSPC);
 	/* A promise that was not written in time is not written later. */
-	while ((w = writes_pop(&s->group))) {
+	while ((w = store_writes_pop(&s->group))) {
 		if (w->keep == STORE_MUST) {
-			write_free(w);
+			store_write_free(w);
 			continue;
 		}
-		carry_out(s->db, w);
-		keep(s, w);
+		store_write_do(s->db, w);
+		store_write_keep(s, w);
 	}
 	tell_degraded(s);
 }
@@ -234,10 +92,13 @@ int store_failed(struct store *s, int rc)
 {
 	const int err = store_file_errno(s->db, rc);
 
-	if (err == -EEXIST || s->in_memory)
+	if (err == -EEXIST || (s->in_memory && !s->over))
 		return err;
 	log_error("store: %s", sqlite3_errmsg(s->db));
-	store_degrade(s, err);
+	if (s->over)
+		store_over_failed(s, rc);
+	else
+		store_degrade(s, err);
 	return s->err;
 }
 
@@ -251,8 +112,8 @@ static int leave_disk(struct store *s, int rc)
 	sqlite3_close_v2(s->disk);
 	s->disk = NULL;
 	s->kept = (struct store_writes) { .n = 0 };
-	writes_move(&s->kept, &s->brought);
-	writes_move(&s->kept, &behind);
+	store_writes_move(&s->kept, &s->brought);
+	store_writes_move(&s->kept, &behind);
 	return err;
 }
 
@@ -274,21 +135,43 @@ static int bring_begin(struct store *s)
 static int bring_piece(struct store *s)
 {
 	for (int i = 0; i < STORE_PIECE && s->kept.n; i++) {
-		const int rc = carry_out(s->disk, s->kept.first);
+		const int rc = store_write_do(s->disk, s->kept.first);
 
 		/* If the row exists already, that is fine. */
 		if (rc != SQLITE_OK && (rc & 0xff) != SQLITE_CONSTRAINT)
 			return rc;
-		writes_add(&s->brought, writes_pop(&s->kept));
+		store_writes_add(&s->brought, store_writes_pop(&s->kept));
 	}
 	return SQLITE_OK;
 }
 
+static void tell_stored(struct store *s, struct store_writes *w)
+{
+	s->in_memory = false;
+	s->err = 0;
+	log_notice("store: it can be written again; %u entries that were kept "
+		   "in memory are stored, %llu were dropped", w->n,
+		   (unsigned long long)s->dropped);
+	store_writes_free(w);
+}
+
+static int come_back_over(struct store *s)
+{
+	const int err = store_over_end(s);
+
+	if (err == 0)
+		tell_stored(s, &s->kept);
+	return err;
+}
+
 int store_come_back(struct store *s)
 {
-	const int err = s->disk ? 0 : bring_begin(s);
-	int rc;
+	int err = 0, rc;
 
+	if (s->over)
+		return come_back_over(s);
+	if (!s->disk)
+		err = bring_begin(s);
 	if (err < 0)
 		return err;
 	rc = bring_piece(s);
@@ -302,12 +185,7 @@ int store_come_back(struct store *s)
 	sqlite3_close_v2(s->db);
 	s->db = s->disk;
 	s->disk = NULL;
-	s->in_memory = false;
-	s->err = 0;
-	log_notice("store: it can be written again; %u entries that were kept "
-		   "in memory are stored, %llu were dropped", s->brought.n,
-		   (unsigned long long)s->dropped);
-	store_writes_free(&s->brought);
+	tell_stored(s, &s->brought);
 	return 0;
 }
 
@@ -339,26 +217,26 @@ int store_do(struct store *s, enum store_keep k, const char *sql,
 	if (s->in_memory && k == STORE_MUST)
 		return s->err;
 	va_start(ap, kinds);
-	w = write_new(sql, k, kinds, ap);
+	w = store_write_new(sql, k, kinds, ap);
 	va_end(ap);
-	rc = carry_out(s->db, w);
-	if (rc != SQLITE_OK && !s->in_memory) {
+	rc = store_write_do(s->db, w);
+	if (rc != SQLITE_OK && (!s->in_memory || s->over)) {
 		err = store_failed(s, rc);
 		if (err != -EEXIST && k != STORE_MUST)
-			rc = carry_out(s->db, w);
+			rc = store_write_do(s->db, w);
 	}
 	if (rc != SQLITE_OK) {
-		write_free(w);
+		store_write_free(w);
 		return err ? err : store_file_errno(s->db, rc);
 	}
 	if (s->in_memory) {
-		keep(s, w);
+		store_write_keep(s, w);
 		return STORE_KEPT;
 	}
 	if (s->together)
-		writes_add(&s->group, w);
+		store_writes_add(&s->group, w);
 	else
-		write_free(w);
+		store_write_free(w);
 	return 0;
 }
 
@@ -366,14 +244,15 @@ static sqlite3_stmt *ask(struct store *s, const struct store_write *w,
 			 int *ret_err)
 {
 	sqlite3_stmt *q = NULL;
-	int rc = begin(s->db, w, &q);
+	int rc = store_write_begin(s->db, w, &q);
 
 	/* If it cannot be read, ask the copy in memory. */
-	if (rc != SQLITE_ROW && rc != SQLITE_DONE && !s->in_memory) {
+	if (rc != SQLITE_ROW && rc != SQLITE_DONE &&
+	    (!s->in_memory || s->over)) {
 		sqlite3_finalize(q);
 		q = NULL;
 		store_failed(s, rc);
-		rc = begin(s->db, w, &q);
+		rc = store_write_begin(s->db, w, &q);
 	}
 	*ret_err = rc == SQLITE_ROW ? 0 : rc == SQLITE_DONE ? -ENOENT : -EIO;
 	if (rc == SQLITE_ROW)
@@ -385,10 +264,10 @@ static sqlite3_stmt *ask(struct store *s, const struct store_write *w,
 static sqlite3_stmt *ask_with(struct store *s, int *ret_err, const char *sql,
 			      const char *kinds, va_list ap)
 {
-	struct store_write *w = write_new(sql, STORE_MAY_GO, kinds, ap);
+	struct store_write *w = store_write_new(sql, STORE_MAY_GO, kinds, ap);
 	sqlite3_stmt *q = ask(s, w, ret_err);
 
-	write_free(w);
+	store_write_free(w);
 	return q;
 }
 

@@ -4,11 +4,16 @@
  * lost
  *
  * While the disk takes what is written, `db` is the database on the disk. When
- * a write or a read fails, the store is degraded. Then `db` becomes a copy in
- * memory of all tables but the texts; what is written goes there and into a
- * list, and store_tick() tries to bring the list to the disk. So a question is
- * always answered by what was written last.  The list goes there in pieces, so
- * that the loop does not stand, but in one transaction: all of it, or nothing.
+ * a write or a read fails, the store is degraded: what is written goes into
+ * memory and into a list, and store_tick() tries to bring it to the disk.  A
+ * question is always answered by what was written last.
+ *
+ * A disk that is full is still read: `db` stays, and what is written is a
+ * transaction that is committed when there is room (store_over.c).  Of any
+ * other disk, `db` becomes a copy in memory of all tables but the texts.  Then
+ * the list goes to the disk in pieces, so that the loop does not stand, but in
+ * one transaction: all of it, or nothing.  A full disk that fails in another
+ * way becomes such a copy, and the list is repeated there.
  *
  * The list is bounded. Of two writes of the same statement to the same row only
  * the later one is needed. If there is no room, the oldest write that may be
@@ -60,7 +65,9 @@ struct store_writes {
 
 struct store {
 	sqlite3 *db;			/* the one in force */
-	bool in_memory;			/* it is the copy */
+	bool in_memory;			/* what is written stays there */
+	bool over;			/* in a transaction of `db`; else that
+					 * is a copy */
 	bool unread;			/* nothing could be copied */
 	char dir[256], path[512];
 	int lock;			/* -1: the disk would not have it */
@@ -73,6 +80,8 @@ struct store {
 					 * NULL: it is not yet */
 	struct store_writes brought;	/* into its transaction */
 	uint64_t dropped;
+	uint64_t spared;		/* from the list, but not from the
+					 * transaction */
 	int64_t retained_us;
 	char told[512];			/* what was mended at the start */
 };
@@ -112,6 +121,10 @@ int store_failed(struct store *s, int rc);
 /** store_degrade() - from now on the store is in memory. */
 void store_degrade(struct store *s, int err);
 
+/** store_over_failed() - the transaction over a full disk is lost by @rc of
+ *  SQLite; what was kept is written anew, over the disk or over a copy. */
+void store_over_failed(struct store *s, int rc);
+
 /** store_undo() - drop an open transaction and what is in it. */
 void store_undo(struct store *s);
 
@@ -119,7 +132,29 @@ void store_undo(struct store *s);
  *  Return: 1: there is more; 0: all is there; -errno. */
 int store_come_back(struct store *s);
 
-/** store_writes_free() - forget the kept writes. */
+/* -- store_write.c -------------------------------------------------------- */
+
+/* As for store_do(); a copy of the values. */
+struct store_write *store_write_new(const char *sql, enum store_keep keep,
+				    const char *kinds, va_list ap);
+void store_write_free(struct store_write *w);
+
+/** store_write_begin() - run it up to its first row.  Return: SQLITE_ROW,
+ *  SQLITE_DONE, or why not. */
+int store_write_begin(sqlite3 *db, const struct store_write *w,
+		      sqlite3_stmt **ret);
+/** store_write_do() - SQLITE_OK, or why not. */
+int store_write_do(sqlite3 *db, const struct store_write *w);
+
+/** store_write_keep() - keep @w, and drop the entries that it replaces. */
+void store_write_keep(struct store *s, struct store_write *w);
+
+void store_writes_add(struct store_writes *l, struct store_write *w);
+/** store_writes_pop() - the first, or NULL. */
+struct store_write *store_writes_pop(struct store_writes *l);
+/** store_writes_move() - @from, behind what is in @to. */
+void store_writes_move(struct store_writes *to, struct store_writes *from);
+/** store_writes_free() - forget them. */
 void store_writes_free(struct store_writes *w);
 
 /* -- store_file.c --------------------------------------------------------- */
@@ -143,6 +178,18 @@ int store_file_probe(const struct store *s);
 
 /** store_file_look() - to read only, where nothing can be written; or NULL. */
 sqlite3 *store_file_look(struct store *s);
+
+/** store_file_room() - does the disk take so many bytes?  0 or -errno. */
+int store_file_room(const struct store *s, int64_t bytes);
+
+/* -- store_over.c --------------------------------------------------------- */
+
+/** store_over_begin() - from now on what is written to `db` stays in memory,
+ *  over what is on the disk.  Return: false: it cannot be. */
+bool store_over_begin(struct store *s);
+
+/** store_over_end() - bring it to the disk.  Return: 0 or -errno. */
+int store_over_end(struct store *s);
 
 /* -- store_count.c -------------------------------------------------------- */
 

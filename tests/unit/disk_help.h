@@ -20,6 +20,7 @@ struct disk_help {
 	long n;				/* changes so far */
 	long fail_from;			/* -1: never */
 	int fail_rc;
+	bool unread;			/* it cannot be read either */
 	int64_t bytes;			/* written */
 	/* Before @bytes go to @path at @at; sync, truncate: bytes -1. */
 	void (*snoop)(const char *path, const void *data, int bytes,
@@ -61,7 +62,8 @@ static int disk_close(sqlite3_file *f)
 
 static int disk_read(sqlite3_file *f, void *to, int n, sqlite3_int64 at)
 {
-	return REAL(f)->pMethods->xRead(REAL(f), to, n, at);
+	return disk.unread ? SQLITE_IOERR_READ :
+	       REAL(f)->pMethods->xRead(REAL(f), to, n, at);
 }
 
 static int disk_write(sqlite3_file *f, const void *from, int n,

@@ -51,6 +51,7 @@ static int teardown(void **state)
 {
 	(void)state;
 	disk.fail_from = -1;
+	disk.unread = false;
 	disk.snoop = NULL;
 	in_dir("rm -rf %s");
 	return 0;
@@ -400,63 +401,6 @@ static void a_cut_that_never_ends_writes_little(void **state)
 	assert_true(day_mb <= STORE_DAY_MB);
 }
 
-static void the_list_in_memory_is_bounded_and_keeps_what_counts(void **state)
-{
-	struct store *s = open_store();
-	struct store_size size;
-	uint32_t n;
-
-	(void)state;
-	assert_int_equal(add(s, "job", &n), 0);
-	disk.n = 0;
-	disk.fail_from = 0;
-	disk.fail_rc = SQLITE_FULL;
-	assert_int_equal(end(s, n, JOB_DONE), STORE_KEPT);
-	for (int i = 0; i < 20000; i++) {
-		store_note(s, &(struct store_note) {
-			.kind = "alarm", .job = "", .outcome = "", .text = "",
-			.now_us = i });
-		store_set_number(s, "waiting", i);
-	}
-	store_measure(s, &size);
-	assert_true(size.kept <= 4096);
-	assert_true(size.dropped > 15000);
-	disk.fail_from = -1;
-	while (!store_tick(s, 1))
-		assert_ptr_not_equal(s->disk, NULL);
-	store_close(s);
-	s = open_store();
-	assert_int_equal(state_in(s, "job"), JOB_DONE);
-	assert_int_equal(store_number(s, "waiting", 0), 19999);
-	store_close(s);
-}
-
-/* -- A list that is brought to the disk in pieces ------------------------- */
-
-#define ALARMS	1000
-
-static void alarms(struct store *s, int from, int n)
-{
-	for (int i = from; i < from + n; i++)
-		store_note(s, &(struct store_note) {
-			.kind = "alarm", .job = "", .outcome = "", .text = "",
-			.now_us = i });
-}
-
-/* A store that keeps so many alarms; the disk is good again. */
-static struct store *open_with_alarms(void)
-{
-	struct store *s = open_store();
-
-	disk.n = 0;
-	disk.fail_from = 0;
-	disk.fail_rc = SQLITE_FULL;
-	alarms(s, 0, ALARMS);
-	disk.fail_from = -1;
-	assert_int_equal(s->kept.n, ALARMS);
-	return s;
-}
-
 /* As another program sees it; the store may be open. */
 static int alarms_on_disk(void)
 {
@@ -469,14 +413,163 @@ static int alarms_on_disk(void)
 	assert_int_equal(sqlite3_open_v2(path, &db, SQLITE_OPEN_READONLY,
 					 NULL), SQLITE_OK);
 	assert_int_equal(sqlite3_prepare_v2(db, "SELECT count(*), "
-			 "count(DISTINCT utime) FROM event", -1, &q, NULL),
-			 SQLITE_OK);
+			 "count(DISTINCT utime) FROM event WHERE kind='alarm'",
+			 -1, &q, NULL), SQLITE_OK);
 	assert_int_equal(sqlite3_step(q), SQLITE_ROW);
 	n = sqlite3_column_int(q, 0);
 	assert_int_equal(n, sqlite3_column_int(q, 1));
 	sqlite3_finalize(q);
 	sqlite3_close(db);
 	return n;
+}
+
+static void alarms(struct store *s, int from, int n)
+{
+	for (int i = from; i < from + n; i++)
+		store_note(s, &(struct store_note) {
+			.kind = "alarm", .job = "", .outcome = "", .text = "",
+			.now_us = i });
+}
+
+static void disk_fails(int rc)
+{
+	disk.n = 0;
+	disk.fail_from = 0;
+	disk.fail_rc = rc;
+}
+
+/* Return: how many alarms were dropped. */
+static int keep_many(int rc)
+{
+	struct store *s = open_store();
+	struct store_size size;
+	uint32_t n;
+
+	assert_int_equal(add(s, "job", &n), 0);
+	disk_fails(rc);
+	assert_int_equal(end(s, n, JOB_DONE), STORE_KEPT);
+	for (int i = 0; i < 20000; i++) {
+		alarms(s, i, 1);
+		store_set_number(s, "waiting", i);
+	}
+	store_measure(s, &size);
+	assert_true(size.kept <= 4096);
+	disk.fail_from = -1;
+	while (!store_tick(s, 1))
+		assert_ptr_not_equal(s->disk, NULL);
+	store_close(s);
+	assert_int_equal(alarms_on_disk(), 20000 - (int)size.dropped);
+	s = open_store();
+	assert_int_equal(state_in(s, "job"), JOB_DONE);
+	assert_int_equal(store_number(s, "waiting", 0), 19999);
+	store_close(s);
+	return (int)size.dropped;
+}
+
+static void the_list_in_memory_is_bounded_and_keeps_what_counts(void **state)
+{
+	(void)state;
+	assert_true(keep_many(SQLITE_IOERR_WRITE) > 15000);
+}
+
+#define ALARMS	1000
+
+/* -- A disk that is full, and is read on ---------------------------------- */
+
+static void a_full_disk_drops_nothing(void **state)
+{
+	(void)state;
+	assert_int_equal(keep_many(SQLITE_FULL), 0);
+}
+
+static void what_is_written_over_a_full_disk_is_seen_by_us_alone(void **state)
+{
+	struct store *s = open_store();
+	uint32_t n;
+
+	(void)state;
+	assert_int_equal(add(s, "old", &n), 0);
+	alarms(s, 0, 7);
+	disk_fails(SQLITE_FULL);
+	alarms(s, 7, 3);
+	assert_int_equal(store_set_state(s, n, JOB_HELD), STORE_KEPT);
+	assert_true(s->over);
+	assert_int_equal(state_in(s, "old"), JOB_HELD);
+	assert_int_equal(store_number_of(s, 0, "SELECT count(*) FROM event "
+					 "WHERE kind='alarm'", ""), 10);
+	assert_int_equal(alarms_on_disk(), 7);
+	disk.fail_from = -1;
+	assert_true(store_tick(s, 1));
+	assert_string_equal(store_why(s), "");
+	assert_int_equal(alarms_on_disk(), 10);
+	assert_int_equal(store_set_state(s, n, JOB_DONE), 0);
+	store_close(s);
+}
+
+/* There was room, and it is gone again: what was kept is written anew. */
+static void a_disk_that_is_full_again_loses_nothing(void **state)
+{
+	struct store *s = open_store();
+	uint32_t n;
+
+	(void)state;
+	assert_int_equal(add(s, "old", &n), 0);
+	disk_fails(SQLITE_FULL);
+	alarms(s, 0, 100);
+	assert_int_equal(store_set_state(s, n, JOB_HELD), STORE_KEPT);
+	for (int64_t i = 1; i < 4; i++) {
+		assert_false(store_tick(s, i * 10000000));
+		assert_true(s->over);
+		assert_int_equal(state_in(s, "old"), JOB_HELD);
+		assert_int_equal(alarms_on_disk(), 0);
+	}
+	disk.fail_from = -1;
+	assert_true(store_tick(s, 90000000));
+	assert_int_equal(state_in(s, "old"), JOB_HELD);
+	assert_int_equal(alarms_on_disk(), 100);
+	store_close(s);
+}
+
+/* Then nobody knows of the job until it can be read again. */
+static void a_full_disk_that_cannot_be_read_in_the_end_loses_nothing(
+	void **state)
+{
+	struct store *s = open_store();
+	uint32_t n;
+
+	(void)state;
+	assert_int_equal(add(s, "old", &n), 0);
+	disk_fails(SQLITE_FULL);
+	alarms(s, 0, ALARMS);
+	assert_int_equal(store_set_state(s, n, JOB_HELD), STORE_KEPT);
+	sqlite3_db_release_memory(s->db);
+	disk.unread = true;
+	assert_int_equal(state_in(s, "old"), JOB_NSTATES);
+	assert_false(s->over);
+	assert_string_equal(store_why(s), "the disk fails: input/output error");
+	assert_int_equal(store_number_of(s, 0, "SELECT count(*) FROM event",
+					 ""), ALARMS);
+	disk.unread = false;
+	disk.fail_from = -1;
+	while (!store_tick(s, 10000000))
+		assert_ptr_not_equal(s->disk, NULL);
+	assert_int_equal(state_in(s, "old"), JOB_HELD);
+	assert_int_equal(alarms_on_disk(), ALARMS);
+	store_close(s);
+}
+
+/* -- A list that is brought to the disk in pieces ------------------------- */
+
+/* A store that keeps so many alarms; the disk is good again. */
+static struct store *open_with_alarms(void)
+{
+	struct store *s = open_store();
+
+	disk_fails(SQLITE_IOERR_WRITE);
+	alarms(s, 0, ALARMS);
+	disk.fail_from = -1;
+	assert_int_equal(s->kept.n, ALARMS);
+	return s;
 }
 
 /* Return: the ticks that it took. */
@@ -530,8 +623,7 @@ static void a_disk_that_fails_between_the_pieces_loses_nothing(void **state)
 
 	(void)state;
 	assert_false(store_tick(s, 10000000));
-	disk.n = 0;
-	disk.fail_from = 0;
+	disk_fails(SQLITE_FULL);
 	for (int i = 0; s->disk && i < ALARMS; i++)
 		assert_false(store_tick(s, 10000000));
 	assert_string_equal(store_why(s), "the disk is full");
@@ -1182,6 +1274,10 @@ int main(void)
 		T(a_long_text_costs_the_database_nothing),
 		T(a_cut_that_never_ends_writes_little),
 		T(the_list_in_memory_is_bounded_and_keeps_what_counts),
+		T(a_full_disk_drops_nothing),
+		T(what_is_written_over_a_full_disk_is_seen_by_us_alone),
+		T(a_disk_that_is_full_again_loses_nothing),
+		T(a_full_disk_that_cannot_be_read_in_the_end_loses_nothing),
 		T(what_was_kept_comes_in_pieces_and_at_once),
 		T(what_is_written_between_the_pieces_comes_with_them),
 		T(a_disk_that_fails_between_the_pieces_loses_nothing),

@@ -339,13 +339,51 @@ static void all_is_taken_into_memory_by_tables(void **state)
 	store_measure(s, &before);
 	statements = 0;
 	sqlite3_auto_extension((void (*)(void))note_statements);
-	store_degrade(s, -ENOSPC);
+	store_degrade(s, -EROFS);
 	sqlite3_reset_auto_extension();
 	assert_in_range(statements, 1, 500);
 	store_measure(s, &after);
 	assert_int_equal(after.jobs, before.jobs);
 	assert_int_equal(store_waiting(s), 1000);
 	store_close(s);
+}
+
+struct over {
+	long steps;			/* of SQLite */
+	int64_t bytes;			/* of memory */
+};
+
+/* The disk becomes full beside so many jobs, and is full no more. */
+static struct over go_over_beside(int count)
+{
+	struct store *s = open_with(count);
+	const sqlite3 *db = s->db;
+	struct over o = { .steps = 0 };
+
+	o.bytes = -sqlite3_memory_used();
+	sqlite3_progress_handler(s->db, 1, count_step, &o.steps);
+	store_degrade(s, -ENOSPC);
+	store_set_number(s, "n", 1);
+	assert_int_equal(store_waiting(s), count);
+	o.bytes += sqlite3_memory_used();
+	assert_ptr_equal(s->db, db);
+	assert_true(store_tick(s, 10000000));
+	sqlite3_progress_handler(s->db, 0, NULL, NULL);
+	assert_int_equal(store_number(s, "n", 0), 1);
+	store_close(s);
+	return o;
+}
+
+static void over_a_full_disk_no_row_is_copied(void **state)
+{
+	const struct over few = go_over_beside(20);
+	const struct over many = go_over_beside(20000);
+
+	(void)state;
+	print_message("a full disk: %ld steps beside 20 jobs, %ld beside "
+		      "20,000\n", few.steps, many.steps);
+	assert_in_range(many.steps, 1, few.steps + 10);
+	assert_true(many.bytes < 65536);
 }
 
 int main(void)
@@ -357,6 +395,7 @@ int main(void)
 		T(an_event_without_a_job_is_not_kept_for_ever),
 		T(the_counts_follow_the_jobs),
 		T(all_is_taken_into_memory_by_tables),
+		T(over_a_full_disk_no_row_is_copied),
 	};
 
 	if (sodium_init() < 0)
