@@ -293,3 +293,38 @@ def test_a_corner_behind_a_tight_bend_leaves_some_acceleration(tmp_path):
     assert dry_s(of, "\n".join(
         ["G21 G91 F6000"] + [f"G1 X{x:.3f} Y{y:.3f}" for x, y in ways] +
         ["M2", ""])) < 1
+
+
+def turned_text(rng, mm):
+    """Two lines of 3 to 12 mm, and C turns otherwise on the second; in lines of
+    @mm, None: whole."""
+    a, at, lines = rng.uniform(0, 7), (0, 0, 0), ["G21 G90 F6000"]
+    for _ in range(2):
+        length, a = rng.uniform(3, 12), a + rng.uniform(1.5, 2.9)
+        to = (at[0] + length * math.cos(a), at[1] + length * math.sin(a),
+              rng.uniform(-20, 20))
+        n = round(length / mm) if mm else 1
+        for i in range(1, n + 1):
+            lines.append("G1 " + " ".join(
+                f"{w}{p + (q - p) * i / n:.4f}"
+                for w, p, q in zip("XYC", at, to)))
+        at = to
+    return "\n".join(lines + ["M2", ""])
+
+
+def test_a_corner_where_c_turns_otherwise_is_no_bend_beside_it(tmp_path):
+    """Windows of the nodes beside it saw one, which took half of C's
+    acceleration, and the whole way had no more: up to 1.5 times as long.  In one
+    of these programs rounded X and Y still show a bend there."""
+    of = machine(tmp_path, {"X": (70, 1000, 40000), "Y": (80, 500, 150000),
+                            "C": (60, 70, 130000)})
+    shares = {}
+    for seed in range(20):
+        def took(mm):
+            return dry_s(of, turned_text(random.Random(seed), mm))
+
+        long = took(None)
+        for mm in 0.05, 0.02, 0.007:
+            shares[seed, mm] = took(mm) / long
+    over = {k: round(x, 4) for k, x in shares.items() if x > MOST}
+    assert len(over) <= 1 and max(shares.values()) < 1.15, over
