@@ -295,11 +295,11 @@ def test_a_corner_behind_a_tight_bend_leaves_some_acceleration(tmp_path):
         ["M2", ""])) < 1
 
 
-def turned_text(rng, mm):
-    """Two lines of 3 to 12 mm, and C turns otherwise on the second; in lines of
-    @mm, None: whole."""
+def turned_text(rng, mm, sides=2):
+    """Lines of 3 to 12 mm, and C turns otherwise on each; in lines of @mm, None:
+    whole."""
     a, at, lines = rng.uniform(0, 7), (0, 0, 0), ["G21 G90 F6000"]
-    for _ in range(2):
+    for _ in range(sides):
         length, a = rng.uniform(3, 12), a + rng.uniform(1.5, 2.9)
         to = (at[0] + length * math.cos(a), at[1] + length * math.sin(a),
               rng.uniform(-20, 20))
@@ -314,8 +314,8 @@ def turned_text(rng, mm):
 
 def test_a_corner_where_c_turns_otherwise_is_no_bend_beside_it(tmp_path):
     """Windows of the nodes beside it saw one, which took half of C's
-    acceleration, and the whole way had no more: up to 1.5 times as long.  In one
-    of these programs rounded X and Y still show a bend there."""
+    acceleration, and the whole way had no more: up to 1.5 times as long.  On lines
+    of some roundings C's rate is still that of a window that reaches over it."""
     of = machine(tmp_path, {"X": (70, 1000, 40000), "Y": (80, 500, 150000),
                             "C": (60, 70, 130000)})
     shares = {}
@@ -326,5 +326,23 @@ def test_a_corner_where_c_turns_otherwise_is_no_bend_beside_it(tmp_path):
         long = took(None)
         for mm in 0.05, 0.02, 0.007:
             shares[seed, mm] = took(mm) / long
-    over = {k: round(x, 4) for k, x in shares.items() if x > MOST}
-    assert len(over) <= 1 and max(shares.values()) < 1.15, over
+    assert not {k: round(x, 4) for k, x in shares.items()
+                if x > (1.15 if k[1] < 0.02 else 1.04)}
+
+
+def test_a_side_on_which_c_turns_far_is_a_move_of_its_own(tmp_path):
+    """Between short lines as between whole ones.  To pass the corner beside it
+    was thought to save a ramp from full speed, so all sides became one move, as
+    soft as that side: up to 1.5 times as long."""
+    of = machine(tmp_path, {"X": (15, 80, 37000), "Y": (67, 220, 175000),
+                            "C": (75, 54, 125000)})
+    shares = {}
+    for seed in range(12):
+        def took(mm):
+            return dry_s(of, turned_text(random.Random(seed), mm, sides=6))
+
+        long = took(None)
+        for mm in 0.04, 0.015:
+            shares[seed, mm] = took(mm) / long
+    assert not {k: round(x, 4) for k, x in shares.items()
+                if x > (1.18 if k[1] < 0.02 else MOST)}
