@@ -293,3 +293,56 @@ def test_a_corner_behind_a_tight_bend_leaves_some_acceleration(tmp_path):
     assert dry_s(of, "\n".join(
         ["G21 G91 F6000"] + [f"G1 X{x:.3f} Y{y:.3f}" for x, y in ways] +
         ["M2", ""])) < 1
+
+
+def turned_text(rng, mm, sides=2):
+    """Lines of 3 to 12 mm, and C turns otherwise on each; in lines of @mm, None:
+    whole."""
+    a, at, lines = rng.uniform(0, 7), (0, 0, 0), ["G21 G90 F6000"]
+    for _ in range(sides):
+        length, a = rng.uniform(3, 12), a + rng.uniform(1.5, 2.9)
+        to = (at[0] + length * math.cos(a), at[1] + length * math.sin(a),
+              rng.uniform(-20, 20))
+        n = round(length / mm) if mm else 1
+        for i in range(1, n + 1):
+            lines.append("G1 " + " ".join(
+                f"{w}{p + (q - p) * i / n:.4f}"
+                for w, p, q in zip("XYC", at, to)))
+        at = to
+    return "\n".join(lines + ["M2", ""])
+
+
+def test_a_corner_where_c_turns_otherwise_is_no_bend_beside_it(tmp_path):
+    """Windows of the nodes beside it saw one, which took half of C's
+    acceleration, and the whole way had no more: up to 1.5 times as long.  On lines
+    of some roundings C's rate is still that of a window that reaches over it."""
+    of = machine(tmp_path, {"X": (70, 1000, 40000), "Y": (80, 500, 150000),
+                            "C": (60, 70, 130000)})
+    shares = {}
+    for seed in range(20):
+        def took(mm):
+            return dry_s(of, turned_text(random.Random(seed), mm))
+
+        long = took(None)
+        for mm in 0.05, 0.02, 0.007:
+            shares[seed, mm] = took(mm) / long
+    assert not {k: round(x, 4) for k, x in shares.items()
+                if x > (1.15 if k[1] < 0.02 else 1.04)}
+
+
+def test_a_side_on_which_c_turns_far_is_a_move_of_its_own(tmp_path):
+    """Between short lines as between whole ones.  To pass the corner beside it
+    was thought to save a ramp from full speed, so all sides became one move, as
+    soft as that side: up to 1.5 times as long."""
+    of = machine(tmp_path, {"X": (15, 80, 37000), "Y": (67, 220, 175000),
+                            "C": (75, 54, 125000)})
+    shares = {}
+    for seed in range(12):
+        def took(mm):
+            return dry_s(of, turned_text(random.Random(seed), mm, sides=6))
+
+        long = took(None)
+        for mm in 0.04, 0.015:
+            shares[seed, mm] = took(mm) / long
+    assert not {k: round(x, 4) for k, x in shares.items()
+                if x > (1.18 if k[1] < 0.02 else MOST)}

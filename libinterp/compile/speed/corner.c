@@ -104,7 +104,7 @@ struct beside {
 	float most_mm_s;		/* they are no faster */
 };
 
-/* If it is faster now. */
+/* If it is faster now.  What bends there was seen over the corner. */
 static void raise_node(struct pass *w, const struct beside *k, uint32_t i)
 {
 	struct interp_seg *s = &w->segs[i];
@@ -121,9 +121,9 @@ static void raise_node(struct pass *w, const struct beside *k, uint32_t i)
 	v = smaller(over_mm_s(w, k->at, i),
 		    pass_node_mm_s(w, i - 1, i, &h[0].last, &h[1].first));
 	most = pass_least(k->most_mm_s, (float)v);
-	if (most <= s[-1].node_mm_s)
-		return;
-	s[-1].node_mm_s = most;
+	if (most > s[-1].node_mm_s)
+		s[-1].node_mm_s = most;
+	pass_forget_bends(w, i);
 	if (w->bends)
 		pass_note_bends(w, i - 1, i);
 }

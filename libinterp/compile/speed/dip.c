@@ -124,6 +124,7 @@ static double least_bend(const struct pass *w, size_t n, int way)
 void pass_dip_bends(struct pass *w)
 {
 	struct bent_nodes *k = &w->bent_nodes;
+	size_t kept = 0;
 
 	for (size_t n = 0; n < k->n; n++) {
 		const double most = larger(least_bend(w, n, -1),
@@ -133,4 +134,9 @@ void pass_dip_bends(struct pass *w)
 		/* One that no other node shows is none. */
 		is->bend = most > 0 ? larger(is->bend, most) : 0;
 	}
+	/* Nor does its rate count: its windows may have seen a corner. */
+	for (size_t n = 0; n < k->n; n++)
+		if (k->at[n].is.bend > 0)
+			k->at[kept++] = k->at[n];
+	k->n = kept;
 }

@@ -406,6 +406,10 @@ void pass_soften_segs(struct pass *w, uint32_t from, uint32_t to,
  *  bends, when pass_soften() is called. */
 void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind);
 
+/** pass_forget_bends() - what was noted of the node in front of segment
+ *  @behind: it is looked at once more. */
+void pass_forget_bends(struct pass *w, uint32_t behind);
+
 /** pass_bent_node() - the same by one of them. */
 void pass_bent_node(struct pass *w, const struct bent_node *b);
 

@@ -13,6 +13,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static bool moves(const struct interp_seg *s)
 {
@@ -139,6 +140,7 @@ static void soften_ways(struct pass *w, const float *v2)
 void pass_bent_node(struct pass *w, const struct bent_node *b)
 {
 	struct bent_nodes *k = &w->bent_nodes;
+	size_t m;
 
 	if (k->n == k->room &&
 	    grow_array(&k->at, &k->room, sizeof(*k->at)) < 0) {
@@ -146,7 +148,25 @@ void pass_bent_node(struct pass *w, const struct bent_node *b)
 		soften_by(w, b, (double)over_mm_s(w, b->before));
 		return;
 	}
-	k->at[k->n++] = *b;
+	/* Beside a corner, nodes are looked at once more. */
+	for (m = k->n++; m > 0 && k->at[m - 1].behind > b->behind; m--)
+		k->at[m] = k->at[m - 1];
+	k->at[m] = *b;
+}
+
+void pass_forget_bends(struct pass *w, uint32_t behind)
+{
+	struct bent_nodes *k = &w->bent_nodes;
+	size_t to = k->n, from;
+
+	while (to > 0 && k->at[to - 1].behind > behind)
+		to--;
+	for (from = to; from > 0 && k->at[from - 1].behind == behind; from--)
+		;
+	if (from < to)
+		memmove(&k->at[from], &k->at[to],
+			(k->n - to) * sizeof(*k->at));
+	k->n -= to - from;
 }
 
 void pass_forget(struct pass *w)

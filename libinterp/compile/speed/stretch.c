@@ -201,12 +201,16 @@ static struct stretch as_soft(const struct stretch *t,
 }
 
 /* What it saves not to stand between two ways that are as soft as @as. */
-static double pass_s(const struct stretch *a, const struct stretch *b,
-		     const struct stretch *as)
+static double pass_s(const struct stretches *w, const struct stretch *a,
+		     const struct stretch *b, const struct stretch *as)
 {
-	const double v = smaller(a->mm / a->cruise_s, b->mm / b->cruise_s);
+	double v;
 
-	return a->mm > 0 && b->mm > 0 ? ramp_s(as, v) : 0;
+	if (!(a->mm > 0 && b->mm > 0))
+		return 0;
+	v = smaller(a->mm / a->cruise_s, b->mm / b->cruise_s);
+	v = smaller(v, (double)w->segs[b->from - 1].node_mm_s);
+	return ramp_s(as, v);
 }
 
 /* The time of [@from, @to) as one move, @all.  Where a slow way lies between
@@ -223,8 +227,8 @@ static double one_move_s(const struct stretches *w, uint32_t from, uint32_t to,
 		const struct stretch one = as_soft(&hard, all);
 		const struct stretch two = as_soft(&soft, all);
 
-		sum += time_s(&one) + time_s(&two) - pass_s(&last, &one, all) -
-		       pass_s(&one, &two, all);
+		sum += time_s(&one) - pass_s(w, &last, &one, all) +
+		       time_s(&two) - pass_s(w, &one, &two, all);
 		last = two;
 		i = soft.to;
 	}
