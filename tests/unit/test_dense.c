@@ -18,7 +18,7 @@
 /* Of the jerk, where an axis bends and the path speeds up (docs/gap-servo.md,
  * "Not there yet"): on sines, on smooth steps, and on steps of so few degrees
  * that a rounding hides how their bend changes. */
-#define SINE_JERK	1.3
+#define SINE_JERK	1.4
 #define STEP_JERK	1.7
 #define SMALL_JERK	2.1
 #define SMALL_DEG	0.2

@@ -302,19 +302,16 @@ void pass_beside(struct pass *w, struct look *l, uint32_t j, double d,
 	      larger(on_mm_s(w, j, a, is.less), alone_less));
 }
 
-/* Of its jerk, what the change of a bend takes, and what a move may need along
- * the path besides; of one that goes round a bend of the path (along.c) nothing
- * is kept for that. */
-static double change_share(const struct pass *w, const struct bent_node *k,
-			   double v_mm_s, double *ret_along)
+/* Of its jerk, what the change of a bend takes.  What only this node shows may
+ * be a rounding. */
+static double change_share(const struct bent *b, double vvv, double jerk)
 {
-	const double v = v_mm_s, jerk = w->j_mm_s3[k->column];
-	const bool beside = k->own_mm_s2 > 0;
+	const double sure = smaller(b->sure * vvv / jerk, CHANGE_MOST);
 
-	*ret_along = beside ? smaller(JERK_ALONG, (double)k->own_mm_s3 *
-						  k->is.rate / jerk) : 0;
-	return smaller(k->is.change * v * v * v / jerk,
-		       beside ? CHANGE_MOST : INTERP_ARC_JERK_ROUND);
+	if (!(b->bend > 0))
+		return sure;
+	return larger(sure, smaller(b->change * vvv / jerk,
+				    INTERP_ARC_JERK_ROUND));
 }
 
 /* Unlike on an arc, what an axis needs along the path and for its bend may
@@ -326,11 +323,14 @@ void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
 	const double jerk = w->j_mm_s3[k->column], a = w->a_mm_s2[k->column];
 	const struct bent *b = &k->is;
 	const double across = smaller(b->bend * v * v / a, 1);
-	double along, left, both, most;
-	const double round = change_share(w, k, v, &along);
+	const double round = change_share(b, v * v * v, jerk);
+	const double along = smaller(JERK_ALONG,
+				     (double)k->own_mm_s3 * b->rate / jerk);
+	const double other = smaller(round + along, 1);
+	const double most = smaller(sqrt(1 - other * other),
+				    INTERP_ARC_JERK_BOTH);
+	double left, both;
 
-	along = smaller(round + along, 1);
-	most = smaller(sqrt(1 - along * along), INTERP_ARC_JERK_BOTH);
 	left = b->bend > 0 ? most * jerk / (3 * b->bend * v) : INFINITY;
 	if (b->rate > 0)
 		left = smaller(left, (1 - across) * a / b->rate);

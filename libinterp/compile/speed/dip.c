@@ -157,6 +157,4 @@ void pass_dip_bends(struct pass *w)
 		is->bend = most > 0 ? larger(is->bend, most) : 0;
 		is->sure = sure_of(w, n, change_of);
 	}
-	for (size_t n = 0; n < k->n; n++)
-		k->at[n].is.change = k->at[n].is.sure;
 }
