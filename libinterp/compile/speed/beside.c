@@ -22,6 +22,14 @@
 /* Of its jerk, what a bend may take and is not looked for. */
 #define HARDLY		0.1
 
+/* Of its jerk, what a change of its bend may take that is no corner, and how
+ * much of it counts: roundings are left out, so it may be more (dip.c). */
+#define CHANGE_SHARE	0.5
+#define CHANGE_MOST	0.65
+
+/* What is left of its jerk at least, if a move needs as much along the path. */
+#define JERK_ALONG	0.38
+
 /* The chords from node to node over three windows. */
 struct bows {
 	struct chord chord[4];
@@ -75,43 +83,59 @@ struct bend_change {
 					 * whatever is more; INFINITY: there is
 					 * no room to see that */
 	double less;			/* the same, less another rounding */
-	double at;			/* at the node: from the bend before it
-					 * to that behind it */
+	double at;			/* at the node, for certain */
+	double fro;			/* the same, if it bends to and fro;
+					 * then it is no corner */
 };
+
+/* For certain, from the bend before the node to that behind it.  What is a
+ * change on one side of the node only is a corner beside it. */
+static double change_at(const struct bend side[2], double here)
+{
+	const double before = side[0].is, behind = side[1].is;
+	const double all = fabs(behind - before) - side[0].rounding -
+			   side[1].rounding;
+
+	return larger(smaller(all, 2 * smaller(fabs(here - before),
+					       fabs(behind - here))), 0);
+}
+
+static bool to_and_fro(const struct bend side[2])
+{
+	return side[0].is * side[1].is < 0 &&
+	       fabs(side[0].is) > side[0].rounding &&
+	       fabs(side[1].is) > side[1].rounding;
+}
 
 static struct bend_change bend_change(struct pass *w, const struct look *l,
 				      uint32_t j)
 {
-	double most = -1, less = 0, all = 0, rounding = 0, way_mm = 0;
-	struct bend here;
+	struct bend here, side[2];
+	struct bend_change ret = { -1, 0, 0, 0 };
 	struct bows k;
+	double way_mm;
 
 	bows_of(w, l, &k);
-	here = bend_of(w, &k, 1, j);
+	way_mm = k.chord[1].way_mm + k.chord[2].way_mm;
+	here = side[0] = side[1] = bend_of(w, &k, 1, j);
 	for (int n = 0; n < 2; n++) {
-		struct bend next;
 		double d, off;
 
 		if (!(k.chord[3 * n].mm > 0))
 			continue;
-		next = bend_of(w, &k, 2 * n, j);
-		d = next.is - here.is;
-		all += n == 0 ? -d : d;
-		rounding += next.rounding;
-		way_mm += k.chord[1 + n].way_mm;
-		d = fabs(d);
-		off = next.rounding + here.rounding;
+		side[n] = bend_of(w, &k, 2 * n, j);
+		d = fabs(side[n].is - here.is);
+		off = side[n].rounding + here.rounding;
 		if (l->certain)
 			d = larger(d - off, 0);
-		most = larger(most, d / k.chord[1 + n].way_mm);
-		less = larger(less, (d - off) / k.chord[1 + n].way_mm);
+		ret.most = larger(ret.most, d / k.chord[1 + n].way_mm);
+		ret.less = larger(ret.less, (d - off) / k.chord[1 + n].way_mm);
 	}
-	if (most < 0)
-		return (struct bend_change) { INFINITY, INFINITY, INFINITY };
-	return (struct bend_change) {
-		most, less,
-		smaller(most, larger(fabs(all) - rounding, 0) / way_mm)
-	};
+	if (ret.most < 0)
+		return (struct bend_change) { INFINITY, INFINITY, INFINITY, 0 };
+	ret.at = smaller(change_at(side, here.is) / way_mm, ret.most);
+	ret.fro = to_and_fro(side) ? ret.at : 0;
+	return ret;
 }
 
 /* The acceleration along the path, of which a bend at the node may take a
@@ -127,28 +151,61 @@ struct is_bent {
 	double bend, less, change;
 };
 
+static double rate_of(const struct look *l, uint32_t j)
+{
+	return fabs(l->bow.a->rate[j] + l->bow.b->rate[j]) / 2;
+}
+
+/* What is noted of the column at this node. */
+static struct bent *noted(struct pass *w, const struct look *l, uint32_t j)
+{
+	struct bent *b = &w->bent[j];
+
+	if (!(w->bends >> j & 1))
+		*b = (struct bent) { 0 };
+	w->bends |= 1u << j;
+	b->rate = rate_of(l, j);
+	return b;
+}
+
+static void show_change(struct bent *b, const struct look *l, double change)
+{
+	if (change <= b->change)
+		return;
+	b->change = change;
+	b->change_mm = DIP_NEAR * l->window->mm;
+}
+
+/* How its bend changes takes jerk also where it hardly bends, as on the top of
+ * a peak of its rate: there the change is the most. */
+static void note_change(struct pass *w, const struct look *l, uint32_t j,
+			double change)
+{
+	const double v = l->most_mm_s;
+
+	if (!l->certain || change * v * v * v <= HARDLY * w->j_mm_s3[j])
+		return;
+	show_change(noted(w, l, j), l, change);
+}
+
 /* If to speed up on it takes jerk, or more acceleration than there is. */
 static void note_bent(struct pass *w, const struct look *l, uint32_t j,
 		      const struct is_bent *is)
 {
 	const double v = l->most_mm_s, own = own_mm_s2(w);
-	const double rate = fabs(l->bow.a->rate[j] + l->bow.b->rate[j]) / 2;
-	struct bent *b = &w->bent[j];
+	struct bent *b;
 
 	if (!l->certain ||
 	    (3 * is->bend * v * own <= INTERP_ARC_JERK_BOTH * w->j_mm_s3[j] &&
-	     is->bend * v * v + rate * own <= w->a_mm_s2[j]))
+	     is->bend * v * v + rate_of(l, j) * own <= w->a_mm_s2[j]))
 		return;
-	if (!(w->bends >> j & 1))
-		*b = (struct bent) { 0 };
-	w->bends |= 1u << j;
+	b = noted(w, l, j);
 	b->bend = larger(b->bend, is->less);
 	if (is->bend > b->shown) {
 		b->shown = is->bend;
 		b->near_mm = DIP_NEAR * l->window->mm;
 	}
-	b->change = larger(b->change, is->change);
-	b->rate = rate;
+	show_change(b, l, is->change);
 }
 
 /* What its bend may take.  What a move needs along the path may point the same
@@ -166,17 +223,19 @@ static double for_bend_mm_s2(const struct pass *w, const struct look *l,
 /* cbrt(INTERP_ARC_JERK_ROUND) */
 #define ROUND_SPEED	0.66943295
 
-/* How fast a bend may be followed that changes by so much in a mm.  One that is
- * in this window alone may turn back in it, and so change by more than all of
- * it. */
+/* How fast a bend may be followed that changes by @change in a mm, by @at of it
+ * for certain.  One that is in this window alone may turn back in it, and so
+ * change by more than all of it. */
 static double round_mm_s(const struct pass *w, uint32_t j, double change,
-			 double alone_mm_s)
+			 double at, double alone_mm_s)
 {
-	const double v = cbrt(w->j_mm_s3[j] / change);
+	const double jerk = w->j_mm_s3[j], v = cbrt(jerk / change);
+	const double share = cbrt(CHANGE_SHARE * jerk / smaller(at, change));
 
 	if (!(change < INFINITY))
 		return alone_mm_s;
-	return larger(ROUND_SPEED * v, smaller(alone_mm_s, v));
+	return larger(ROUND_SPEED * v,
+		      smaller(alone_mm_s, smaller(v, share)));
 }
 
 /* How fast a bend may be followed by itself, if it comes and goes within this
@@ -224,21 +283,35 @@ void pass_beside(struct pass *w, struct look *l, uint32_t j, double d,
 	alone_less = alone_mm_s(w, l, j, a, less);
 	change = bend_change(w, l, j);
 	goes_on = 2 * change.most * mm < is.bend;
+	is.change = change.at;
+	note_change(w, l, j, change.fro);
 	if (alone * alone * is.bend >= a) {
 		if (goes_on)
 			note_bent(w, l, j, &is);
 		limit(&l->firm, alone, alone_less);
 		return;
 	}
-	round = round_mm_s(w, j, change.most, alone);
+	round = round_mm_s(w, j, change.most, change.at, alone);
 	firm = on_mm_s(w, j, a, is.bend);
-	is.change = change.at;
 	/* A corner is no bend that takes jerk all of the way. */
 	if (smaller(round, firm) > alone || goes_on)
 		note_bent(w, l, j, &is);
-	limit(&l->round, round, round_mm_s(w, j, change.less, alone_less));
+	limit(&l->round, round, round_mm_s(w, j, change.less, change.at,
+				       alone_less));
 	limit(&l->firm, larger(firm, alone),
 	      larger(on_mm_s(w, j, a, is.less), alone_less));
+}
+
+/* Of its jerk, what the change of a bend takes.  What only this node shows may
+ * be a rounding. */
+static double change_share(const struct bent *b, double vvv, double jerk)
+{
+	const double sure = smaller(b->sure * vvv / jerk, CHANGE_MOST);
+
+	if (!(b->bend > 0))
+		return sure;
+	return larger(sure, smaller(b->change * vvv / jerk,
+				    INTERP_ARC_JERK_ROUND));
 }
 
 /* Unlike on an arc, what an axis needs along the path and for its bend may
@@ -250,14 +323,19 @@ void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
 	const double jerk = w->j_mm_s3[k->column], a = w->a_mm_s2[k->column];
 	const struct bent *b = &k->is;
 	const double across = smaller(b->bend * v * v / a, 1);
-	double left = INTERP_ARC_JERK_BOTH * jerk / (3 * b->bend * v);
-	double both, round;
+	const double round = change_share(b, v * v * v, jerk);
+	const double along = smaller(JERK_ALONG,
+				     (double)k->own_mm_s3 * b->rate / jerk);
+	const double other = smaller(round + along, 1);
+	const double most = smaller(sqrt(1 - other * other),
+				    INTERP_ARC_JERK_BOTH);
+	double left, both;
 
+	left = b->bend > 0 ? most * jerk / (3 * b->bend * v) : INFINITY;
 	if (b->rate > 0)
 		left = smaller(left, (1 - across) * a / b->rate);
 	left = larger(left, least);
-	both = smaller(3 * b->bend * v * left / jerk, INTERP_ARC_JERK_BOTH);
-	round = smaller(b->change * v * v * v / jerk, INTERP_ARC_JERK_ROUND);
+	both = b->bend > 0 ? smaller(3 * b->bend * v * left / jerk, most) : 0;
 	ret->a_mm_s2 = left;
 	ret->j_mm_s3 = b->rate > 0 ? (sqrt(1 - both * both) - round) * jerk /
 				     b->rate : INFINITY;
@@ -265,10 +343,13 @@ void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
 
 void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind)
 {
+	const float own_mm_s3 = (float)smaller(w->j_own_mm_s3[0],
+					       w->j_own_mm_s3[1]);
+
 	for (uint32_t j = 0; j < w->n; j++)
 		if (w->bends >> j & 1)
 			pass_bent_node(w, &(struct bent_node) {
 				w->bent[j], j, before, behind,
-				(float)own_mm_s2(w), INFINITY,
+				(float)own_mm_s2(w), own_mm_s3, INFINITY,
 			});
 }

@@ -99,26 +99,50 @@ static const struct bent_node *noted(const struct bent_nodes *k,
 	return NULL;
 }
 
+/* How a bend changes, or how much it is. */
+struct of_bend {
+	double is, near_mm;
+};
+
+static struct of_bend change_of(const struct bent *b)
+{
+	return (struct of_bend) { b->change, b->change_mm };
+}
+
+static struct of_bend shown_of(const struct bent *b)
+{
+	return (struct of_bend) { b->shown, b->near_mm };
+}
+
 /* On one side of bend @n. */
-static double least_bend(const struct pass *w, size_t n, int way)
+static double least_of(const struct pass *w, size_t n, int way,
+		       struct of_bend (*of)(const struct bent *b))
 {
 	const struct bent_nodes *k = &w->bent_nodes;
 	const struct bent_node *b = &k->at[n];
-	double least = b->is.shown;
+	const struct of_bend is = of(&b->is);
+	double least = is.is;
 	size_t at = n;
 
 	for (int i = 1; i <= DIP_NODES; i++) {
 		const int64_t node = (int64_t)b->behind + way * i;
 		const struct bent_node *next;
 
-		if (!pass_is_near(w, b, node))
+		if (!pass_is_near(w, b, node, is.near_mm))
 			break;
 		next = noted(k, b, node, &at);
 		if (!next)
 			return 0;
-		least = smaller(least, next->is.shown);
+		least = smaller(least, of(&next->is).is);
 	}
 	return least;
+}
+
+/* On one side or the other. */
+static double sure_of(const struct pass *w, size_t n,
+		      struct of_bend (*of)(const struct bent *b))
+{
+	return larger(least_of(w, n, -1, of), least_of(w, n, 1, of));
 }
 
 void pass_dip_bends(struct pass *w)
@@ -127,12 +151,12 @@ void pass_dip_bends(struct pass *w)
 	size_t kept = 0;
 
 	for (size_t n = 0; n < k->n; n++) {
-		const double most = larger(least_bend(w, n, -1),
-					   least_bend(w, n, 1));
+		const double most = sure_of(w, n, shown_of);
 		struct bent *is = &k->at[n].is;
 
 		/* One that no other node shows is none. */
 		is->bend = most > 0 ? larger(is->bend, most) : 0;
+		is->sure = sure_of(w, n, change_of);
 	}
 	/* Nor does its rate count: its windows may have seen a corner. */
 	for (size_t n = 0; n < k->n; n++)

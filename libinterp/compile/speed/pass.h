@@ -98,7 +98,10 @@ struct bent {
 					 * near to it show of it */
 	double shown, near_mm;		/* as this node shows it, and how far
 					 * around it */
-	double change;			/* of its bend in a mm */
+	double change, change_mm;	/* of its bend in a mm, and how far
+					 * around the node it shows */
+	double sure;			/* of that, what nodes near to it
+					 * show */
 	double rate;
 };
 
@@ -107,7 +110,7 @@ struct bent {
 struct bent_node {
 	struct bent is;
 	uint32_t column, before, behind;
-	float own_mm_s2;		/* as if nothing bent */
+	float own_mm_s2, own_mm_s3;	/* as if nothing bent */
 	float peak_mm_s;		/* no faster, or it is a peak of the
 					 * speed */
 };
@@ -258,6 +261,7 @@ struct pass {
 	double a_linear_mm_s2;		/* the least of X Y Z */
 	double a_own_mm_s2[2];		/* of the segments before and behind the
 					 * node, as if nothing bent */
+	double j_own_mm_s3[2];
 	double top_mm_s[2];		/* by narrow peaks of rates on them */
 	uint32_t bends;			/* the columns that have this at the
 					 * node: */
@@ -516,12 +520,14 @@ static inline double pass_sees_mm(const struct pass *w)
 	return PASS_SEES * w->windows[0].mm;
 }
 
-/** pass_is_near() - is @node so near to a bend that it shows it? */
+/** pass_is_near() - is @node so near to a bend that it shows it, no farther
+ *  than @mm? */
 static inline bool pass_is_near(const struct pass *w,
-				const struct bent_node *b, int64_t node)
+				const struct bent_node *b, int64_t node,
+				double mm)
 {
 	return node > 0 && node <= (int64_t)w->end &&
-	       pass_from_to(w, b->behind, (uint32_t)node) <= b->is.near_mm;
+	       pass_from_to(w, b->behind, (uint32_t)node) <= mm;
 }
 
 /** pass_away() - the next node at least @mm from node @i in its run, forward if

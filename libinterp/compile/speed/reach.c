@@ -181,12 +181,13 @@ void pass_forget(struct pass *w)
 static float slowest_mm_s(const struct pass *w, const struct bent_node *b,
 			   int way)
 {
+	const double mm = larger(b->is.near_mm, b->is.change_mm);
 	float least = over_mm_s(w, b->before);
 
 	for (int i = 1; i <= DIP_NODES; i++) {
 		const int64_t node = (int64_t)b->behind + way * i;
 
-		if (!pass_is_near(w, b, node))
+		if (!pass_is_near(w, b, node, mm))
 			break;
 		least = pass_least(least, over_mm_s(w, (uint32_t)node - 1));
 	}
