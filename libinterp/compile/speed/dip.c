@@ -160,7 +160,7 @@ void pass_dip_bends(struct pass *w)
 	}
 	/* Nor does its rate count: its windows may have seen a corner. */
 	for (size_t n = 0; n < k->n; n++)
-		if (k->at[n].is.bend > 0)
+		if (k->at[n].is.bend > 0 || k->at[n].is.sure > 0)
 			k->at[kept++] = k->at[n];
 	k->n = kept;
 }
