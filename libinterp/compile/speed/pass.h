@@ -675,6 +675,15 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
  */
 void pass_stretches(struct pass *w);
 
+/**
+ * pass_moves_s() - the time of segments @from up to, but not with, @to, by moves
+ * that stand in the flagged nodes and at both ends.
+ *
+ * @v2: room for @to numbers.
+ */
+double pass_moves_s(const struct interp_seg *segs, uint32_t from, uint32_t to,
+		    float *v2);
+
 /** pass_hops() - write slower_* and softer_* of all segments, when all else is
  *  known. */
 void pass_hops(struct pass *w);

@@ -20,6 +20,7 @@
 #include "speed/pass.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #define CLASSES_MAX	40
 
@@ -144,16 +145,19 @@ static void set_stand(struct stretches *w, uint32_t i, bool stands)
 				    *flags & ~INTERP_SEG_STAND);
 }
 
-/* Out of [@from, @to).  Return: were there any? */
-static bool take_stands(struct stretches *w, uint32_t from, uint32_t to)
+/* In [@from, @to). */
+static bool has_stands(const struct stretches *w, uint32_t from, uint32_t to)
 {
-	bool were = false;
+	for (uint32_t i = from; i + 1 < to; i++)
+		if (w->segs[i].flags & INTERP_SEG_STAND)
+			return true;
+	return false;
+}
 
-	for (uint32_t i = from; i + 1 < to; i++) {
-		were |= w->segs[i].flags & INTERP_SEG_STAND;
+static void take_stands(struct stretches *w, uint32_t from, uint32_t to)
+{
+	for (uint32_t i = from; i + 1 < to; i++)
 		set_stand(w, i, false);
-	}
-	return were;
 }
 
 /* From @from on, as long as the class is @c, or as long as it is above it. */
@@ -300,11 +304,13 @@ static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to,
  * Where the axes that move change all the way, as round an arc of short lines,
  * so does the class, and to stand at each change takes too long.  A softer way
  * may lie there all the same.  So what is hard for one class may be all of the
- * softer ones, too.
+ * softer ones, too.  What each class comes to was estimated from means; the
+ * quickest is found node by node.
  */
 static void divide_all(struct stretches *w, uint32_t from, uint32_t to)
 {
-	double least_s = INFINITY;
+	float *v2 = NULL;
+	double least_s = 0;
 	int best = CLASSES_MAX;
 
 	for (int c = 0; c < CLASSES_MAX && is_any(w, c); c++) {
@@ -312,12 +318,21 @@ static void divide_all(struct stretches *w, uint32_t from, uint32_t to)
 
 		if (!may_pay(w, from, to, c))
 			continue;
-		s = divide(w, from, to, c);
-		if (take_stands(w, from, to) && s < least_s) {
+		divide(w, from, to, c);
+		if (!has_stands(w, from, to))
+			continue;
+		if (!v2)
+			v2 = malloc((size_t)to * sizeof(*v2));
+		s = v2 ? pass_moves_s(w->segs, from, to, v2) : INFINITY;
+		take_stands(w, from, to);
+		if (v2 && !(least_s > 0))
+			least_s = WORTH * pass_moves_s(w->segs, from, to, v2);
+		if (s < least_s) {
 			least_s = s;
 			best = c;
 		}
 	}
+	free(v2);
 	if (best < CLASSES_MAX)
 		divide(w, from, to, best);
 }
