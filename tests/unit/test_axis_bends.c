@@ -28,7 +28,7 @@
 /* The rates of a rigid body have peaks where the tip goes round a tight bend
  * (docs/gap-servo.md, "Not there yet"). */
 #define MOST_A_BODY	1.4
-#define MOST_J_BODY	1.8
+#define MOST_J_BODY	1.2
 
 /* A corner and a rounding. */
 #define OFF_MM		(INTERP_CORNER_MM + 0.001)

@@ -22,9 +22,8 @@
 /* Of its jerk, what a bend may take and is not looked for. */
 #define HARDLY		0.1
 
-/* Of its jerk, what a change of its bend may take that is no corner, and how
- * much of it counts: roundings are left out, so it may be more (dip.c). */
-#define CHANGE_SHARE	0.5
+/* Of its jerk, how much counts that a change of its bend takes.  Roundings are
+ * left out (dip.c), so it may be more than PASS_BESIDE_SHARE. */
 #define CHANGE_MOST	0.65
 
 /* What is left of its jerk at least, if a move needs as much along the path. */
@@ -230,7 +229,8 @@ static double round_mm_s(const struct pass *w, uint32_t j, double change,
 			 double at, double alone_mm_s)
 {
 	const double jerk = w->j_mm_s3[j], v = cbrt(jerk / change);
-	const double share = cbrt(CHANGE_SHARE * jerk / smaller(at, change));
+	const double share = cbrt(PASS_BESIDE_SHARE * jerk /
+				  smaller(at, change));
 
 	if (!(change < INFINITY))
 		return alone_mm_s;

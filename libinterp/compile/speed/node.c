@@ -507,7 +507,9 @@ static void limit_top(const struct pass *w, const struct chord *c,
 		bend = smaller(bend, 6 * less / (mm * (mm + half_mm)));
 	}
 	if (bend > 0)
-		ret->v_mm_s = smaller(ret->v_mm_s, cbrt(w->j_mm_s3[j] / bend));
+		ret->v_mm_s = smaller(ret->v_mm_s,
+				      cbrt(PASS_BESIDE_SHARE * w->j_mm_s3[j] /
+					   bend));
 }
 
 /*

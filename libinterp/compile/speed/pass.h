@@ -159,6 +159,10 @@ struct dip {
 /* What it may take of the jerk. */
 #define PASS_CHANGE_SHARE	0.7
 
+/* The same of an axis beside the path, if that is no corner; so much may the
+ * top of a peak of its rate take, too.  The rest is for going along. */
+#define PASS_BESIDE_SHARE	0.5
+
 /* How the bend of the path changes, as one window shows it; that is moved on by
  * its own length. */
 struct changing {
