@@ -106,15 +106,14 @@ static int lay_out(struct interp_build *b, uint32_t lines, const struct work *w)
 {
 	const struct interp_build_about about = { .lines = lines,
 						  .name = w->name };
-	const size_t bytes = interp_build_bytes(b);
 	struct interp_program p;
-	void *block = malloc(bytes);
+	size_t bytes;
+	void *block = interp_build_take(b, &about, &bytes);
 	int err;
 
 	if (!block)
 		return put_failure("the program is too large",
 				   "a smaller one, or in parts");
-	interp_build_write(b, &about, block);
 	err = interp_program_map(&p, block, bytes) == 0 ?
 	     put_path(&p, w->tolerance_mm) : EX_SOFTWARE;
 	free(block);

@@ -252,14 +252,13 @@ static int lay_out(struct interp_build *b, const struct route_text *from,
 {
 	const struct interp_build_about about = { .lines = w->lines,
 						  .name = from->path };
-	const size_t bytes = interp_build_bytes(b);
 	struct interp_program p;
-	void *block = malloc(bytes);
+	size_t bytes;
+	void *block = interp_build_take(b, &about, &bytes);
 	int err;
 
 	if (!block)
 		return EX_OSERR;
-	interp_build_write(b, &about, block);
 	err = interp_program_map(&p, block, bytes) ? EX_SOFTWARE :
 						   follow(w, &p, from);
 	free(block);

@@ -136,12 +136,11 @@ static int lay_out(struct sim_job *job, struct interp_build *b,
 {
 	const struct interp_build_about about = { .lines = job->lines,
 						  .name = path };
-	const size_t bytes = interp_build_bytes(b);
+	size_t bytes;
 
-	job->block = malloc(bytes);
+	job->block = interp_build_take(b, &about, &bytes);
 	if (!job->block)
 		return EX_OSERR;
-	interp_build_write(b, &about, job->block);
 	return interp_program_map(&job->program, job->block, bytes) ?
 	       EX_SOFTWARE : 0;
 }

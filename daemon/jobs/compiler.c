@@ -30,6 +30,10 @@ struct compiler {
 	struct compiler_request request;
 	char *text;			/* that was read */
 	struct interp_build *build;
+	struct interp_build_memory memory;
+	void *block;			/* of the program, as it is mapped */
+	size_t block_bytes;
+	int block_err;
 	struct compiler_result result;
 	atomic_bool over;		/* the thread needs nothing any more */
 	compiler_done_fn done;
@@ -94,14 +98,20 @@ static int measure(struct compiler *c, const void *block, size_t bytes)
 	return err;
 }
 
-/* For edmd, or for a measure alone. */
-static int block_make(struct compiler *c, void **ret, size_t bytes)
+/* A program for edmd is put together where edmd finds it. */
+static void *block_grow(void *arg, void *at, size_t bytes)
 {
-	if (c->request.wants_block)
-		return shm_program_begin(&c->result.block, ret,
-					 c->request.wants_block, bytes);
-	*ret = malloc(bytes);
-	return *ret ? 0 : -ENOMEM;
+	struct compiler *c = arg;
+
+	c->block_err = at ?
+		shm_program_resize(c->result.block, &c->block, c->block_bytes,
+				   bytes) :
+		shm_program_begin(&c->result.block, &c->block,
+				  c->request.wants_block, bytes);
+	if (c->block_err < 0)
+		return NULL;
+	c->block_bytes = bytes;
+	return c->block;
 }
 
 static int block_write(struct compiler *c)
@@ -109,18 +119,16 @@ static int block_write(struct compiler *c)
 	struct interp_build_about about = {
 		.lines = c->result.lines, .name = c->request.name,
 	};
-	const size_t bytes = interp_build_bytes(c->build);
+	size_t bytes;
 	void *block;
-	int err = block_make(c, &block, bytes);
+	int err;
 
-	if (err < 0)
-		return err;
 	memcpy(about.hash, c->request.sha256, sizeof(about.hash));
-	interp_build_write(c->build, &about, block);
+	block = interp_build_take(c->build, &about, &bytes);
+	if (!block)
+		return -ENOMEM;
 	err = measure(c, block, bytes);
-	if (c->request.wants_block)
-		shm_program_unmap(block, bytes);
-	else
+	if (!c->request.wants_block)
 		free(block);
 	return err;
 }
@@ -158,6 +166,8 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	of.build.begins_inside = c->request.goes_on;
 	of.build.from = c->request.goes_on ? &c->request.from : NULL;
 	of.build.threads = wants_program(c) ? 0 : 1;
+	c->memory = (struct interp_build_memory) { block_grow, c };
+	of.build.memory = c->request.wants_block ? &c->memory : NULL;
 	c->build = interp_build_create(&of.build);
 	if (!c->build)
 		return -ENOMEM;
@@ -216,6 +226,9 @@ static void reading_compile(void *arg)
 	struct reading *r = arg;
 
 	r->err = compiler_text(r->c, r->tech, r->dialect);
+	/* Not its own memory was too small. */
+	if (r->err == -ENOMEM && r->c->block_err < 0)
+		r->err = r->c->block_err;
 }
 
 /* The hash of a long text takes a fifth as long as all that is made of the
@@ -304,6 +317,8 @@ static void compiler_work(struct compiler *c)
 	c->result.block = -1;
 	compile_and_keep(c);
 	interp_build_destroy(c->build);
+	if (c->block)
+		shm_program_unmap(c->block, c->block_bytes);
 	free(c->text);
 }
 

@@ -148,18 +148,22 @@ void object_leave(int fd, const char *machine, const char *what)
  * The memory is reserved at once.  A sparse object would end its writer with
  * SIGBUS when /dev/shm is full one day.
  */
-int object_grow(int fd, size_t bytes, unsigned int mode)
+int object_reserve(int fd, size_t from, size_t bytes)
 {
 	int err;
 
+	do {
+		err = posix_fallocate(fd, (off_t)from, (off_t)bytes);
+	} while (err == EINTR);
+	return -err;
+}
+
+int object_grow(int fd, size_t bytes, unsigned int mode)
+{
 	/* shm_open() has reduced the mode by the umask. */
 	if (fchmod(fd, mode) < 0 || ftruncate(fd, (off_t)bytes) < 0)
 		return -errno;
-
-	do {
-		err = posix_fallocate(fd, 0, (off_t)bytes);
-	} while (err == EINTR);
-	return -err;
+	return object_reserve(fd, 0, bytes);
 }
 
 int object_map(void **ret, int fd, size_t bytes, bool writable)

@@ -52,6 +52,9 @@ int object_check(int fd);
 /** object_size() - bytes of @fd, which must be a plain file; else -errno. */
 int64_t object_size(int fd);
 
+/** object_reserve() - give @fd the memory from @from on. */
+int object_reserve(int fd, size_t from, size_t bytes);
+
 /** object_grow() - give the empty @fd @bytes of memory and @mode. */
 int object_grow(int fd, size_t bytes, unsigned int mode);
 

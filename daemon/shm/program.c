@@ -58,6 +58,23 @@ int shm_program_begin(int *ret_fd, void **ret, const char *machine,
 	return err;
 }
 
+int shm_program_resize(int fd, void **at, size_t was, size_t bytes)
+{
+	int err = bytes == 0 ? -EINVAL : bytes > SHM_PROGRAM_MAX ? -EFBIG :
+		  bytes > was ? object_reserve(fd, was, bytes - was) : 0;
+	void *to = MAP_FAILED;
+
+	if (err == 0) {
+		to = mremap(*at, was, bytes, MREMAP_MAYMOVE);
+		err = to == MAP_FAILED ? -errno : 0;
+	}
+	if (ftruncate(fd, (off_t)(err ? was : bytes)) < 0 && err == 0)
+		err = -errno;
+	if (to != MAP_FAILED)
+		*at = to;
+	return err;
+}
+
 int shm_program_name(int fd, const char *machine, uint32_t n)
 {
 	char path[OBJECT_PATH_MAX], of[32];

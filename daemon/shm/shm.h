@@ -507,6 +507,16 @@ int shm_program_create(void **ret, const char *machine, uint32_t n,
 int shm_program_begin(int *ret_fd, void **ret, const char *machine,
 		      size_t bytes);
 
+/**
+ * shm_program_resize() - let it have @bytes instead of @was; what is new is
+ * zeros.
+ *
+ * @at: where it is mapped; ret: it may be elsewhere
+ *
+ * Return: as shm_program_create(); then it is as it was.  Any thread.
+ */
+int shm_program_resize(int fd, void **at, size_t was, size_t bytes);
+
 /** shm_program_name() - it is edmd.<machine>.program.<n> now, as it is. */
 int shm_program_name(int fd, const char *machine, uint32_t n);
 

@@ -47,12 +47,11 @@ static inline void bench_must(bool good)
 static inline struct interp_program bench_program(struct interp_build *b)
 {
 	const struct interp_build_about about = { .lines = 1 };
-	const size_t bytes = interp_build_bytes(b);
-	void *block = malloc(bytes);
+	size_t bytes;
+	void *block = interp_build_take(b, &about, &bytes);
 	struct interp_program p;
 
 	bench_must(block != NULL);
-	interp_build_write(b, &about, block);
 	interp_build_destroy(b);
 	bench_must(interp_program_map(&p, block, bytes) == 0);
 	return p;

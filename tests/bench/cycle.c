@@ -40,11 +40,9 @@ static struct interp_program compile(const char *path)
 			diag.found);
 		exit(65);
 	}
-	n = interp_build_bytes(b);
-	block = malloc(n);
-	interp_build_write(b, &about, block);
+	block = interp_build_take(b, &about, &n);
 	interp_build_destroy(b);
-	if (interp_program_map(&p, block, n))
+	if (!block || interp_program_map(&p, block, n))
 		exit(70);
 	return p;
 }

@@ -63,14 +63,13 @@ static void walk_both_ways(struct interp_build *b, struct trail *t,
 			   double *ret_deviation_mm)
 {
 	const struct interp_build_about about = { .lines = 1 };
-	const size_t bytes = interp_build_bytes(b);
-	void *block = malloc(bytes);
+	size_t bytes;
+	void *block = interp_build_take(b, &about, &bytes);
 	struct interp_deviation d = { 0 };
 	struct interp_program p;
 	struct interp_cursor c;
 
-	interp_build_write(b, &about, block);
-	if (interp_program_map(&p, block, bytes) < 0 ||
+	if (!block || interp_program_map(&p, block, bytes) < 0 ||
 	    interp_cursor_init(&c, &p) < 0)
 		abort();
 	trail_add(t, &c);
@@ -188,9 +187,7 @@ static void read_blade(struct blade *ret, const char *path)
 	}
 	fclose(f);
 	b = compile(ret->text, ret->n);
-	bytes = interp_build_bytes(b);
-	ret->block = malloc(bytes);
-	interp_build_write(b, &about, ret->block);
+	ret->block = interp_build_take(b, &about, &bytes);
 	interp_program_map(&ret->p, ret->block, bytes);
 	interp_build_destroy(b);
 }

@@ -98,11 +98,9 @@ static struct interp_program compile(const struct path *path)
 	must(interp_nc_compile(&(struct interp_text) {
 		.at = t.at, .bytes = t.n }, &no, b, &done, &diag), &diag);
 	free(t.at);
-	n = interp_build_bytes(b);
-	block = malloc(n);
+	block = interp_build_take(b, &about, &n);
 	if (!block)
 		abort();
-	interp_build_write(b, &about, block);
 	interp_build_destroy(b);
 	if (interp_program_map(&p, block, n) < 0)
 		abort();

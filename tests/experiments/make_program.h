@@ -71,14 +71,13 @@ static inline void program_walk(struct interp_build *b, point_fn point,
 				void *arg)
 {
 	const struct interp_build_about about = { .lines = 1 };
-	const size_t bytes = interp_build_bytes(b);
-	void *block = malloc(bytes);
+	size_t bytes;
+	void *block = interp_build_take(b, &about, &bytes);
 	struct interp_program p;
 	struct interp_cursor c;
 
 	if (!block)
 		abort();
-	interp_build_write(b, &about, block);
 	interp_build_destroy(b);
 	if (interp_program_map(&p, block, bytes) < 0 ||
 	    interp_cursor_init(&c, &p) < 0)

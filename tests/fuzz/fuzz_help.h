@@ -51,11 +51,10 @@ static inline void *fuzz_lay_out(struct interp_build *b, uint32_t lines,
 				 struct interp_program *p)
 {
 	const struct interp_build_about about = { .lines = lines };
-	const size_t bytes = interp_build_bytes(b);
-	void *block = malloc(bytes);
+	size_t bytes;
+	void *block = interp_build_take(b, &about, &bytes);
 
 	assert(block);
-	interp_build_write(b, &about, block);
 	assert(interp_program_map(p, block, bytes) == 0);
 	for (uint32_t i = 0; i < p->head->nsegs; i++) {
 		assert(interp_program_seg_ok(p, i, &p->segs[i]));

@@ -119,11 +119,9 @@ int main(void)
 		printf("%s; %s\n", d.found, d.wanted);
 		return 1;
 	}
-	size = interp_build_bytes(b);
-	block = malloc(size);
 	about.lines = r.lines;
-	interp_build_write(b, &about, block);
-	if (interp_program_map(&p, block, size) ||
+	block = interp_build_take(b, &about, &size);
+	if (!block || interp_program_map(&p, block, size) ||
 	    interp_cursor_init(&c, &p))
 		return 1;
 	for (int way = 1; way >= -1; way -= 2) {

@@ -50,11 +50,9 @@ static inline void compile_bytes(struct compiled *c, const char *text,
 	assert_non_null(b);
 	c->rc = interp_compile(&t, &c->o, b, &c->lines, &c->diag);
 	if (!c->rc) {
-		size = interp_build_bytes(b);
-		c->block = malloc(size);
-		assert_non_null(c->block);
 		about.lines = c->lines;
-		interp_build_write(b, &about, c->block);
+		c->block = interp_build_take(b, &about, &size);
+		assert_non_null(c->block);
 		assert_int_equal(interp_program_map(&c->p, c->block, size), 0);
 	}
 	interp_build_destroy(b);

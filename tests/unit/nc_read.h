@@ -71,11 +71,9 @@ static inline void nc_read_bytes(struct nc_read *n, const char *text,
 	free(exact);
 	if (n->rc)
 		return;
-	size = interp_build_bytes(n->build);
-	n->block = malloc(size);
-	assert_non_null(n->block);
 	about.lines = n->result.lines;
-	interp_build_write(n->build, &about, n->block);
+	n->block = interp_build_take(n->build, &about, &size);
+	assert_non_null(n->block);
 	assert_int_equal(interp_program_map(&n->p, n->block, size), 0);
 }
 

@@ -409,9 +409,7 @@ static void punch_errors(enum interp_strategy s, double ret[2])
 	assert_int_equal(interp_nc_compile(&(struct interp_text) {
 			.at = punch, .bytes = sizeof(punch) - 1 },
 		&n.o, n.build, &n.result, &n.diag), 0);
-	bytes = interp_build_bytes(n.build);
-	n.block = malloc(bytes);
-	interp_build_write(n.build, &about, n.block);
+	n.block = interp_build_take(n.build, &about, &bytes);
 	assert_int_equal(interp_program_map(&n.p, n.block, bytes), 0);
 	assert_int_equal(interp_cursor_init(&c, &n.p), 0);
 	interp_cursor_aim(&c, 1e9);

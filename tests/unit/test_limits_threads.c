@@ -21,6 +21,7 @@
 #define PART	200			/* segments of one kind */
 
 static uint64_t seed;
+static const struct interp_build_memory *memory;	/* NULL: the heap */
 
 /* Where the path goes, and how. */
 struct going {
@@ -133,7 +134,7 @@ static struct interp_build *program_from(uint64_t s, uint32_t threads,
 	struct interp_build_options o = { .machine = &help_machine,
 					  .threads = threads,
 					  .begins_inside = from != NULL,
-					  .from = from };
+					  .from = from, .memory = memory };
 	const uint32_t curve_at = rnd(&s) % 2 ? SEGS * 3 / 4 : 0;
 	double end[INTERP_NAXES] = { 0 };
 	struct interp_build *b;
@@ -220,6 +221,61 @@ static void neither_do_those_of_the_rest_of_a_program(void **st)
 		unmake(&made[i]);
 }
 
+/* Memory that is never where it was. */
+struct moving {
+	void *at;
+	size_t bytes;
+	int moves;
+};
+
+static void *move_on(void *arg, void *at, size_t bytes)
+{
+	struct moving *m = arg;
+	void *to = malloc(bytes);
+
+	assert_non_null(to);
+	assert_ptr_equal(at, m->at);
+	if (at) {
+		memcpy(to, at, bytes < m->bytes ? bytes : m->bytes);
+		memset(at, 0xa5, m->bytes);
+		free(at);
+	}
+	*m = (struct moving) { to, bytes, m->moves + 1 };
+	return to;
+}
+
+static void nor_on_the_memory_that_becomes_the_program(void **st)
+{
+	const struct interp_build_from from = { .far_mm = 20,
+						.probed_known = true,
+						.up = INTERP_Z };
+	struct interp_build_entry entry;
+
+	(void)st;
+	for (uint32_t i = 0; i < 4; i++) {
+		const struct interp_build_from *f = i < 2 ? NULL : &from;
+		struct moving m = { .moves = 0 };
+		const struct interp_build_memory lent = { move_on, &m };
+		struct interp_build *b[2];
+		struct made made[2];
+
+		for (int k = 0; k < 2; k++) {
+			memory = k ? &lent : NULL;
+			b[k] = program_from(seed + i, i % 2 + 1, f);
+			if (f)
+				rest_of(b[k], f, &entry);
+			made[k] = finish(b[k]);
+		}
+		memory = NULL;
+		assert_true(m.moves > 2);
+		assert_ptr_equal(made[1].block, m.at);
+		assert_int_equal(made[1].bytes, m.bytes);
+		same(&made[0], &made[1]);
+		unmake(&made[0]);
+		unmake(&made[1]);
+	}
+}
+
 static void a_program_may_be_given_up(void **st)
 {
 	(void)st;
@@ -231,6 +287,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(limits_do_not_depend_on_the_number_of_threads),
 		cmocka_unit_test(neither_do_those_of_the_rest_of_a_program),
+		cmocka_unit_test(nor_on_the_memory_that_becomes_the_program),
 		cmocka_unit_test(a_program_may_be_given_up),
 	};
 

@@ -210,6 +210,38 @@ static void a_program_is_there_when_it_is_named(void **state)
 	shm_program_remove(machine, 7);
 }
 
+/* In steps that are no pages, up and down. */
+static void a_program_grows_while_it_has_no_name(void **state)
+{
+	static const size_t sizes[] = { 3000000, 5001, 70000 };
+	size_t was = 5000, bytes;
+	const void *at;
+	void *block;
+	int fd;
+
+	(void)state;
+	assert_int_equal(shm_program_begin(&fd, &block, machine, was), 0);
+	memset(block, 0xa5, was);
+	assert_int_equal(shm_program_resize(fd, &block, was, 0), -EINVAL);
+	assert_int_equal(shm_program_resize(fd, &block, was,
+					    SHM_PROGRAM_MAX + 1), -EFBIG);
+	for (int i = 0; i < 3; i++) {
+		assert_int_equal(shm_program_resize(fd, &block, was, sizes[i]),
+				 0);
+		was = sizes[i];
+		assert_int_equal(((uint8_t *)block)[4999], 0xa5);
+		assert_int_equal(((uint8_t *)block)[was - 1], 0);
+	}
+	shm_program_unmap(block, was);
+	assert_int_equal(shm_program_name(fd, machine, 7), 0);
+	close(fd);
+	assert_int_equal(shm_program_open(&at, &bytes, machine, 7), 0);
+	assert_int_equal(bytes, was);
+	assert_int_equal(((const uint8_t *)at)[4999], 0xa5);
+	shm_program_unmap(at, bytes);
+	shm_program_remove(machine, 7);
+}
+
 /* A few bytes of a folder's own, which would be gigabytes of edmd's memory. */
 static void a_program_with_holes_is_not_read(void **state)
 {
@@ -275,6 +307,7 @@ int main(void)
 		cmocka_unit_test(a_file_of_another_inode_or_time_is_another),
 		cmocka_unit_test(who_made_a_program_looks_at_it_without_a_copy),
 		cmocka_unit_test(a_program_is_there_when_it_is_named),
+		cmocka_unit_test(a_program_grows_while_it_has_no_name),
 		cmocka_unit_test(a_program_with_holes_is_not_read),
 	};
 

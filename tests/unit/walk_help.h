@@ -81,10 +81,9 @@ static inline void arc(struct interp_build *b, const double *end, double ca,
 static inline struct made finish(struct interp_build *b)
 {
 	const struct interp_build_about about = { .lines = 1 };
-	struct made m = { .bytes = interp_build_bytes(b) };
+	struct made m;
 
-	m.block = malloc(m.bytes);
-	interp_build_write(b, &about, m.block);
+	m.block = interp_build_take(b, &about, &m.bytes);
 	interp_build_destroy(b);
 	assert_int_equal(interp_program_map(&m.p, m.block, m.bytes), 0);
 	return m;

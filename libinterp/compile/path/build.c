@@ -13,7 +13,6 @@
 #include "path/build_rule.h"
 #include "pulse/pulse.h"
 #include "interp/smaller.h"
-#include "grow.h"
 
 #include <errno.h>
 #include <math.h>
@@ -29,21 +28,64 @@
 #define FIRST_ROOM	64		/* elements */
 #define NEXT_BYTES	(1u << 20)
 
+/* More than glibc has in its heap, whatever was freed before: so it grows
+ * without a copy. */
+#define APART_BYTES	(33u << 20)
+/* Memory of somebody else is taken as it grows, whether it is written to or
+ * not. */
+#define MORE_BYTES	(16u << 20)
+
+static size_t next_bytes(const struct table *t)
+{
+	const size_t bytes = t->room * t->size;
+
+	if (bytes < NEXT_BYTES / 2)
+		return NEXT_BYTES;
+	if (t->memory)
+		return bytes + (bytes < MORE_BYTES ? bytes : MORE_BYTES);
+	return bytes < APART_BYTES / 2 ? APART_BYTES : 2 * bytes;
+}
+
 static size_t next_room(const struct table *t)
 {
-	const size_t twice = 2 * t->room, some = NEXT_BYTES / t->size;
+	return t->room ? next_bytes(t) / t->size : FIRST_ROOM;
+}
 
-	if (!t->room)
-		return FIRST_ROOM;
-	return twice > some ? twice : some;
+static char *memory_of(const struct table *t)
+{
+	return t->at ? (char *)t->at - t->lead : NULL;
+}
+
+int build_table_size(struct table *t, size_t bytes)
+{
+	char *at = memory_of(t);
+
+	at = t->memory ? t->memory->grow(t->memory->arg, at, bytes) :
+			 realloc(at, bytes);
+	if (!at)
+		return -ENOMEM;
+	t->at = at + t->lead;
+	return 0;
 }
 
 int build_table_room(struct table *t, size_t n)
 {
-	while (t->room < t->n + n)
-		if (grow_to(&t->at, &t->room, next_room(t), t->size))
+	while (t->room < t->n + n) {
+		const size_t room = next_room(t);
+
+		if (build_table_size(t, t->lead + room * t->size) < 0)
 			return -ENOMEM;
+		t->room = room;
+	}
 	return 0;
+}
+
+void build_table_free(struct table *t)
+{
+	if (!t->memory)
+		free(memory_of(t));
+	t->at = NULL;
+	t->n = t->room = 0;
 }
 
 static int64_t *nodes_of(const struct interp_build *b)
@@ -116,6 +158,8 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 		b->o.walked_max = INTERP_BUILD_WALKED_MAX;
 	b->how = pulse_strategy(o->strategy);
 	b->segs.size = sizeof(struct interp_seg);
+	b->segs.lead = BUILD_SEGS_AT;
+	b->segs.memory = o->memory;
 	b->nodes.size = sizeof(int64_t);
 	b->arcs.size = sizeof(struct interp_arc);
 	b->conds.size = sizeof(struct interp_cond);
@@ -160,7 +204,7 @@ void interp_build_destroy(struct interp_build *b)
 	if (!b)
 		return;
 	build_limits_stop(b);
-	free(b->segs.at);
+	build_table_free(&b->segs);
 	free(b->nodes.at);
 	free(b->arcs.at);
 	free(b->conds.at);

@@ -1,5 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* build_block.c - writes a finished program as one flat block */
+/*
+ * build_block.c - a finished program as one flat block
+ *
+ * Most of a program are its segments.  So the memory of their table becomes
+ * the block, and only the other tables are copied.
+ */
 #include "path/build_limits.h"
 
 #include "both.h"
@@ -43,7 +48,7 @@ static struct interp_program_head layout(const struct interp_build *b)
 		.length_mm = b->length_mm,
 	};
 
-	h.segs_at = (sizeof(h) + 7) & ~7ull;
+	h.segs_at = BUILD_SEGS_AT;
 	h.nodes_at = h.segs_at + nsegs * b->segs.size;
 	h.arcs_at = h.nodes_at + (nsegs + 1) * b->naxes * b->nodes.size;
 	h.conds_at = h.arcs_at + b->arcs.n * b->arcs.size;
@@ -108,9 +113,7 @@ static void move_table(char *to, struct table *t, uint32_t threads)
 {
 	if (t->n > 0)
 		copy(to, t->at, t->n * t->size, threads);
-	free(t->at);
-	t->at = NULL;
-	t->n = t->room = 0;
+	build_table_free(t);
 }
 
 static void write_head(const struct interp_build *b,
@@ -141,21 +144,43 @@ static void write_nodes(struct interp_build *b, size_t rows,
 	}
 }
 
-void interp_build_write(struct interp_build *b,
-			const struct interp_build_about *about, void *block)
+/* All but the segments, which are there. */
+static void write_tables(struct interp_build *b,
+			 const struct interp_program_head *h, char *base,
+			 uint32_t threads)
+{
+	move_table(base + h->arcs_at, &b->arcs, threads);
+	move_table(base + h->conds_at, &b->conds, threads);
+	move_table(base + h->escapes_at, &b->escapes, threads);
+	move_table(base + h->couples_at, &b->couples, threads);
+	move_table(base + h->bits_at, &b->bits, threads);
+	move_table(base + h->curves_at, &b->curves, threads);
+	move_table(base + h->pieces_at, &b->pieces, threads);
+	move_table(base + h->stops_at, &b->stops, threads);
+	move_table(base + h->numbers_at, &b->numbers, threads);
+	move_table(base + h->runs_at, &b->runs, threads);
+}
+
+void *interp_build_take(struct interp_build *b,
+			const struct interp_build_about *about,
+			size_t *ret_bytes)
 {
 	struct interp_program_head h = layout(b);
-	char *base = block;
-	struct interp_seg *segs = (void *)(base + h.segs_at);
 	const size_t n = b->segs.n;
 	const bool ended = ends(b);
 	const uint32_t threads = build_threads(b);
 	struct interp_program p;
+	struct interp_seg *segs;
+	char *base;
 
 	write_head(b, &h, about);
-	memcpy(base, &h, sizeof(h));
 	build_limits_await(b);
-	move_table((char *)segs, &b->segs, threads);
+	if (build_table_size(&b->segs, h.bytes) < 0)
+		return NULL;
+	segs = b->segs.at;
+	base = (char *)segs - h.segs_at;
+	b->segs.at = NULL;
+	memcpy(base, &h, sizeof(h));
 	write_nodes(b, n + 1, &h, (void *)(base + h.nodes_at), threads);
 	if (!ended) {
 		segs[n] = (struct interp_seg) {
@@ -163,17 +188,10 @@ void interp_build_write(struct interp_build *b,
 			.line = segs[n - 1].line, .cond = b->cond,
 		};
 	}
-	move_table(base + h.arcs_at, &b->arcs, threads);
-	move_table(base + h.conds_at, &b->conds, threads);
-	move_table(base + h.escapes_at, &b->escapes, threads);
-	move_table(base + h.couples_at, &b->couples, threads);
-	move_table(base + h.bits_at, &b->bits, threads);
-	move_table(base + h.curves_at, &b->curves, threads);
-	move_table(base + h.pieces_at, &b->pieces, threads);
-	move_table(base + h.stops_at, &b->stops, threads);
-	move_table(base + h.numbers_at, &b->numbers, threads);
-	move_table(base + h.runs_at, &b->runs, threads);
-	if (interp_program_map(&p, block, h.bytes) == 0)
+	write_tables(b, &h, base, threads);
+	if (interp_program_map(&p, base, h.bytes) == 0)
 		build_limits_write(b, &p, segs, (void *)(base + h.bends_at),
 				   threads);
+	*ret_bytes = h.bytes;
+	return base;
 }

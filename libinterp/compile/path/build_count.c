@@ -143,6 +143,7 @@ int build_count_rest(struct interp_build *b)
 		return 0;
 	k->read = NULL;
 	o.from = NULL;
+	o.memory = NULL;
 	o.begins_inside = false;
 	o.threads = 1;
 	/* Lines take the way of those that may be held back. */

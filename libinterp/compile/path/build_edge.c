@@ -201,8 +201,11 @@ static int look_along(struct look *l)
 /* A builder that stands there, too, and minds no travel. */
 static struct interp_build *stand_there(const struct interp_build *b)
 {
-	struct interp_build *alone = interp_build_create(&b->o);
+	struct interp_build_options o = b->o;
+	struct interp_build *alone;
 
+	o.memory = NULL;
+	alone = interp_build_create(&o);
 	if (!alone)
 		return NULL;
 	memcpy(alone->here_mm, b->here_mm, sizeof(b->here_mm));
@@ -227,14 +230,9 @@ static void *block_of(const struct interp_build *b, const struct build_edge *e,
 		return NULL;
 	*err = e->arc ? build_arc_add(alone, e->arc, e->word, diag) :
 			build_pair_add(alone, e->pair, e->word, diag);
-	bytes = interp_build_bytes(alone);
 	if (*err == 0) {
-		block = malloc(bytes);
-		*err = block ? 0 : -ENOMEM;
-	}
-	if (block) {
-		interp_build_write(alone, &about, block);
-		*err = interp_program_map(ret, block, bytes);
+		block = interp_build_take(alone, &about, &bytes);
+		*err = block ? interp_program_map(ret, block, bytes) : -ENOMEM;
 	}
 	interp_build_destroy(alone);
 	return block;

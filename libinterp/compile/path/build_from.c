@@ -267,6 +267,7 @@ static int make_way(struct from *f)
 		o.start_mm[i] = f->o->now_mm[i] - shift_mm(f, i);
 	o.fit_mm = 0;
 	o.from = NULL;
+	o.memory = NULL;
 	f->way = interp_build_create(&o);
 	if (!f->way)
 		return -ENOMEM;
@@ -380,26 +381,44 @@ static void swap(struct table *a, struct table *b)
 	*b = t;
 }
 
+/* The segments of the way, and those behind what is left out, in the memory of
+ * these: that may become the program. */
+static int join_segs(struct interp_build *b, const struct table *way,
+		     size_t left_out)
+{
+	const size_t rest = b->segs.n - left_out, size = b->segs.size;
+	char *at;
+
+	b->segs.room = b->segs_room;
+	if (way->n > left_out &&
+	    build_table_room(&b->segs, way->n - left_out) < 0)
+		return -ENOMEM;
+	b->segs_room = b->segs.room;
+	at = b->segs.at;
+	memmove(at + way->n * size, at + left_out * size, rest * size);
+	memcpy(at, way->at, way->n * size);
+	b->segs.n = way->n + rest;
+	return 0;
+}
+
 static int join(struct from *f)
 {
 	struct interp_build *b = f->b, *way = f->way;
 	const size_t nway = way->segs.n, left_out = (size_t)f->last + 1;
 	int err = take_bits(f);
 
-	if (err == 0)
-		err = append(&way->segs, &b->segs, left_out);
 	/* The last node of the way is the first of the rest. */
 	if (err == 0)
 		err = append(&way->nodes, &b->nodes,
 			     (left_out + 1) * b->naxes);
-	if (err < 0)
-		return err;
 	b->inside.left_mm = left_out < b->segs.n ?
 			    segs_of(b)[left_out].s_mm : b->length_mm;
+	if (err == 0)
+		err = join_segs(b, &way->segs, left_out);
+	if (err < 0)
+		return err;
 	f->entry->way_mm = way->length_mm;
-	swap(&b->segs, &way->segs);
 	swap(&b->nodes, &way->nodes);
-	b->segs_room = b->segs.room;
 	b->timed = 0;
 	b->inside.nway = (uint32_t)nway;
 	memcpy(b->first, way->first, sizeof(b->first));

@@ -14,7 +14,13 @@
 struct table {
 	void *at;
 	size_t n, room, size;
+	size_t lead;			/* bytes before `at`, in its memory */
+	const struct interp_build_memory *memory;	/* NULL: the heap */
 };
+
+/* Where the segments are in a block, for which their table leaves room: it
+ * becomes the block. */
+#define BUILD_SEGS_AT	((sizeof(struct interp_program_head) + 7) & ~7ull)
 
 /* Lines that are held back: see build_fit.c. */
 struct build_fit {
@@ -100,6 +106,13 @@ struct interp_build {
 
 /** build_table_room() - make room for @n more.  Return: 0 or -ENOMEM. */
 int build_table_room(struct table *t, size_t n);
+
+/** build_table_size() - let its memory have @bytes, with what is before `at`.
+ *  Return: 0 or -ENOMEM. */
+int build_table_size(struct table *t, size_t bytes);
+
+/** build_table_free() - it is empty then, and may be filled again. */
+void build_table_free(struct table *t);
 
 /** build_table_add() - make room for one more; NULL: out of memory. */
 static inline void *build_table_add(struct table *t)

@@ -9,7 +9,7 @@
  *
  * Threads: allocates; one object belongs to one thread.  Never in the cycle.
  * For a long program it has a thread of its own, which ends in
- * interp_build_write() or interp_build_destroy() at the latest; common/both.h
+ * interp_build_take() or interp_build_destroy() at the latest; common/both.h
  * says on which processors.
  */
 #ifndef INTERP_BUILD_H
@@ -23,6 +23,13 @@ struct interp_build_from;
 
 /* Lattice points: some minutes. */
 #define INTERP_BUILD_WALKED_MAX	500000000u
+
+/* Where a program is to be: at first @at is NULL. */
+struct interp_build_memory {
+	/* As realloc() does it; NULL: it is as it was. */
+	void *(*grow)(void *arg, void *at, size_t bytes);
+	void *arg;			/* what has been given belongs to it */
+};
 
 struct interp_build_options {
 	const struct interp_machine *machine;	/* read at every call; lent */
@@ -51,6 +58,8 @@ struct interp_build_options {
 					 * unless it is said by what: */
 	const struct interp_build_from *from;	/* lent until then; NULL: it is
 						 * not known */
+	const struct interp_build_memory *memory;	/* lent; NULL: the
+							 * heap */
 	uint32_t threads;		/* that work on a long program, with the
 					 * caller's: 1 or 2; 0: as many as there
 					 * are processors for them */
@@ -247,18 +256,22 @@ struct interp_build_about {
 };
 
 /**
- * interp_build_bytes() - size of the block interp_build_write() fills.
+ * interp_build_bytes() - size of the block that interp_build_take() makes.
  */
 size_t interp_build_bytes(const struct interp_build *b);
 
 /**
- * interp_build_write() - write the finished program to @block.
+ * interp_build_take() - the finished program as a block of @ret_bytes bytes.
  *
- * An INTERP_END is added if the last segment is not one.  @block must have room
- * for interp_build_bytes() bytes and be aligned to 8 bytes.  After this call
- * the builder can only be destroyed.
+ * An INTERP_END is added if the last segment is not one.  The memory in which
+ * the program was put together becomes the block, and belongs to the caller,
+ * who frees it if it is of the heap.  After this call the builder can only be
+ * destroyed.
+ *
+ * Return: NULL: out of memory.
  */
-void interp_build_write(struct interp_build *b,
-			const struct interp_build_about *about, void *block);
+void *interp_build_take(struct interp_build *b,
+			const struct interp_build_about *about,
+			size_t *ret_bytes);
 
 #endif /* INTERP_BUILD_H */
