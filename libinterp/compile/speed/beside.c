@@ -343,8 +343,8 @@ void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
 
 void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind)
 {
-	const float own_mm_s3 = (float)smaller(w->j_own_mm_s3[0],
-					       w->j_own_mm_s3[1]);
+	const float a = w->segs[before].j_mm_s3, b = w->segs[behind].j_mm_s3;
+	const float own_mm_s3 = a < b ? a : b;
 
 	for (uint32_t j = 0; j < w->n; j++)
 		if (w->bends >> j & 1)

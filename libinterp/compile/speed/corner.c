@@ -115,7 +115,6 @@ static void raise_node(struct pass *w, const struct beside *k, uint32_t i)
 	for (uint32_t n = 0; n < 2; n++) {
 		heading_of(&w->ways, i - 1 + n, &h[n]);
 		w->a_own_mm_s2[n] = (double)w->segs[i - 1 + n].a_mm_s2;
-		w->j_own_mm_s3[n] = (double)w->segs[i - 1 + n].j_mm_s3;
 	}
 	/* They are not asked in their order. */
 	w->gate.way.to_mm = -INFINITY;

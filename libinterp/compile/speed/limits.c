@@ -535,8 +535,6 @@ COLUMNS_INLINE void walk_nodes(struct pass *w, uint32_t known, uint32_t to,
 		limit_seg(w, i, is, n);
 		w->a_own_mm_s2[0] = w->a_own_mm_s2[1];
 		w->a_own_mm_s2[1] = (double)w->segs[i].a_mm_s2;
-		w->j_own_mm_s3[0] = w->j_own_mm_s3[1];
-		w->j_own_mm_s3[1] = (double)w->segs[i].j_mm_s3;
 		if (last > 0) {
 			leave_slow(w, i);
 			limit_node(w, last, i, &was->last, &is->first, n);

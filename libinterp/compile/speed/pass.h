@@ -265,7 +265,6 @@ struct pass {
 	double a_linear_mm_s2;		/* the least of X Y Z */
 	double a_own_mm_s2[2];		/* of the segments before and behind the
 					 * node, as if nothing bent */
-	double j_own_mm_s3[2];
 	double top_mm_s[2];		/* by narrow peaks of rates on them */
 	uint32_t bends;			/* the columns that have this at the
 					 * node: */
