@@ -679,8 +679,8 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 void pass_stretches(struct pass *w);
 
 /**
- * pass_moves_s() - the time of segments @from up to, but not with, @to, by moves
- * that stand in the flagged nodes and at both ends.
+ * pass_moves_s() - the time of segments @from up to, but not with, @to, by
+ * moves that stand in the flagged nodes and at both ends.
  *
  * @v2: room for @to numbers.
  */
