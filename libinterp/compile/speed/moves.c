@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * moves.c - how long segments take, as moves from stand to stand
+ * moves.c - how long segments take, as moves from stand to stand, and where to
+ * stand between sides that are softer and harder
  *
  * A move has the least acceleration and jerk of its segments.  Its speed at
  * each node is found forward and back, as without a limit of jerk, but with as
@@ -28,11 +29,11 @@ static double slope_mm_s2(double v, double a, double j)
 }
 
 /* Up to the next stand. */
-static struct move next_move(const struct interp_seg *segs, uint32_t from,
-			     uint32_t to)
+static struct move next_move(const struct pass *w, uint32_t from, uint32_t to)
 {
+	const struct interp_seg *segs = w->segs;
 	struct move ret = { from, from, INFINITY };
-	double a = INFINITY, j = INFINITY, mm = 0, s = 0;
+	double a = w->travel_a_mm_s2, j = w->travel_j_mm_s3, mm = 0, s = 0;
 
 	do {
 		const struct interp_seg *k = &segs[ret.to++];
@@ -86,13 +87,14 @@ static double way_s(const struct interp_seg *s, double a, double b2, double e2)
 	return (2 * top - sqrt(b2) - sqrt(e2)) / a + even_mm / top;
 }
 
-double pass_moves_s(const struct interp_seg *segs, uint32_t from, uint32_t to,
+double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
 		    float *v2)
 {
+	const struct interp_seg *segs = w->segs;
 	double sum = 0;
 
 	while (from < to) {
-		const struct move m = next_move(segs, from, to);
+		const struct move m = next_move(w, from, to);
 		double at = 0;
 
 		speeds(segs, &m, v2);
@@ -105,4 +107,90 @@ double pass_moves_s(const struct interp_seg *segs, uint32_t from, uint32_t to,
 		from = m.to;
 	}
 	return sum;
+}
+
+/* Of what is at least so many times as soft as its neighbour ... */
+#define SOFTER	1.25
+/* ... a node no faster than this share of both is as good as a stand. */
+#define SLOW	0.5f
+
+/* Of what a positioning may use of it. */
+static bool is_softer(float a, float b, double most)
+{
+	const double x = smaller((double)a, most), y = smaller((double)b, most);
+
+	return x > SOFTER * y || y > SOFTER * x;
+}
+
+static bool is_apart(const struct pass *w, const struct interp_seg *a,
+		     const struct interp_seg *b)
+{
+	return a->node_mm_s < SLOW * a->feed_max_mm_s &&
+	       a->node_mm_s < SLOW * b->feed_max_mm_s &&
+	       (is_softer(a->a_mm_s2, b->a_mm_s2, w->travel_a_mm_s2) ||
+		is_softer(a->j_mm_s3, b->j_mm_s3, w->travel_j_mm_s3));
+}
+
+/* Stands in all corners between what is softer and what is harder. */
+static bool set_apart(struct pass *w, uint32_t from, uint32_t to)
+{
+	const struct interp_seg *last = NULL;
+	bool any = false;
+
+	for (uint32_t i = from; i < to; i++) {
+		const struct interp_seg *s = &w->segs[i];
+
+		if (s->kind >= INTERP_BEGIN)
+			continue;
+		if (last && is_apart(w, last, s)) {
+			pass_set_stand(w, i - 1, true);
+			any = true;
+		}
+		last = s;
+	}
+	return any;
+}
+
+/* Behind the next stand. */
+static uint32_t behind_stand(const struct pass *w, uint32_t at, uint32_t to)
+{
+	while (at < to && !(w->segs[at].flags & INTERP_SEG_STAND))
+		at++;
+	return at < to ? at + 1 : to;
+}
+
+/* Of each two moves that follow each other, take the stand away that saves too
+ * little.  Return: were there any? */
+static bool join_moves(struct pass *w, uint32_t from, uint32_t to, float *v2)
+{
+	bool any = false;
+
+	while (from < to) {
+		const uint32_t mid = behind_stand(w, from, to);
+		const uint32_t end = behind_stand(w, mid, to);
+		double apart;
+
+		if (mid == to)
+			break;
+		apart = pass_moves_s(w, from, end, v2);
+		pass_set_stand(w, mid - 1, false);
+		if (apart < PASS_WORTH * pass_moves_s(w, from, end, v2)) {
+			pass_set_stand(w, mid - 1, true);
+			from = mid;
+		} else {
+			any = true;
+			from = end;
+		}
+	}
+	return any;
+}
+
+#define JOIN_MOST	16		/* each may halve their number */
+
+void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *v2)
+{
+	if (!set_apart(w, from, to))
+		return;
+	for (int i = 0; i < JOIN_MOST && join_moves(w, from, to, v2); i++)
+		;
 }

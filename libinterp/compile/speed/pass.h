@@ -263,6 +263,8 @@ struct pass {
 	struct plateau plateau;
 	double turn_least[2];		/* near_turns_faster() */
 	double a_linear_mm_s2;		/* the least of X Y Z */
+	double travel_a_mm_s2;		/* of any positioning, at most */
+	double travel_j_mm_s3;
 	double a_own_mm_s2[2];		/* of the segments before and behind the
 					 * node, as if nothing bent */
 	double top_mm_s[2];		/* by narrow peaks of rates on them */
@@ -684,8 +686,29 @@ void pass_stretches(struct pass *w);
  *
  * @v2: room for @to numbers.
  */
-double pass_moves_s(const struct interp_seg *segs, uint32_t from, uint32_t to,
+double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
 		    float *v2);
+
+/* Stands must save so much of the time. */
+#define PASS_WORTH	0.9
+
+/**
+ * pass_stand_apart() - flag the corners between sides that are softer and
+ * harder, where stands save time: each such side may be as soft as the axes
+ * that turn on it, and one move over all of them is as soft as the softest.
+ *
+ * @v2: as for pass_moves_s()
+ */
+void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *v2);
+
+/** pass_set_stand() - at the end of segment @i; false: take it away. */
+static inline void pass_set_stand(struct pass *w, uint32_t i, bool stands)
+{
+	uint8_t *flags = &w->segs[i].flags;
+
+	*flags = (uint8_t)(stands ? *flags | INTERP_SEG_STAND :
+				    *flags & ~INTERP_SEG_STAND);
+}
 
 /** pass_hops() - write slower_* and softer_* of all segments, when all else is
  *  known. */

@@ -24,9 +24,6 @@
 
 #define CLASSES_MAX	40
 
-/* Stands must save so much of the time. */
-#define WORTH		0.9
-
 /* Segments @from up to, but not with, @to. */
 struct stretch {
 	uint32_t from, to;
@@ -35,6 +32,7 @@ struct stretch {
 };
 
 struct stretches {
+	struct pass *pass;
 	struct interp_seg *segs;
 	double a_mm_s2, j_mm_s3;	/* the most of all segments */
 	double a_least, j_least;	/* and the least */
@@ -137,14 +135,6 @@ static double time_s(const struct stretch *t)
 	return 4 * cbrt(t->mm / (2 * j));
 }
 
-static void set_stand(struct stretches *w, uint32_t i, bool stands)
-{
-	uint8_t *flags = &w->segs[i].flags;
-
-	*flags = (uint8_t)(stands ? *flags | INTERP_SEG_STAND :
-				    *flags & ~INTERP_SEG_STAND);
-}
-
 /* In [@from, @to). */
 static bool has_stands(const struct stretches *w, uint32_t from, uint32_t to)
 {
@@ -157,7 +147,7 @@ static bool has_stands(const struct stretches *w, uint32_t from, uint32_t to)
 static void take_stands(struct stretches *w, uint32_t from, uint32_t to)
 {
 	for (uint32_t i = from; i + 1 < to; i++)
-		set_stand(w, i, false);
+		pass_set_stand(w->pass, i, false);
 }
 
 /* From @from on, as long as the class is @c, or as long as it is above it. */
@@ -256,13 +246,13 @@ static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
 		if (soft.to > soft.from && c < CLASSES_MAX)
 			sum += divide(w, soft.from, soft.to, c + 1);
 		if (hard.mm > 0 && soft.mm > 0)
-			set_stand(w, soft.from - 1, true);
+			pass_set_stand(w->pass, soft.from - 1, true);
 		i = soft.to;
 		if (i < to)
-			set_stand(w, i - 1, true);
+			pass_set_stand(w->pass, i - 1, true);
 	}
 	one = one_move_s(w, from, to, c, &all);
-	if (sum < WORTH * one)
+	if (sum < PASS_WORTH * one)
 		return sum;
 	take_stands(w, from, to);
 	return one;
@@ -296,8 +286,37 @@ static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to,
 		ramps += is_above(&k, s) != was;
 		was = is_above(&k, s);
 	}
-	return all.cruise_s < WORTH * (all.cruise_s + RAMP_MOST * ramps *
+	return all.cruise_s < PASS_WORTH * (all.cruise_s + RAMP_MOST * ramps *
 				       ramp_s(&all, most_mm_s));
+}
+
+/* -- Which stands are the best -------------------------------------------- */
+
+#define APART	(CLASSES_MAX + 1)	/* pass_stand_apart() */
+
+struct tried {
+	uint32_t from, to;
+	float *v2;			/* room for the speeds */
+	double least_s;			/* 0: not known */
+	int best;			/* class; CLASSES_MAX: no stands */
+};
+
+/* The stands that are there, and will not be then, with the best so far. */
+static void compare(struct stretches *w, struct tried *k, int by)
+{
+	double s;
+
+	if (!has_stands(w, k->from, k->to))
+		return;
+	s = pass_moves_s(w->pass, k->from, k->to, k->v2);
+	take_stands(w, k->from, k->to);
+	if (!(k->least_s > 0))
+		k->least_s = PASS_WORTH * pass_moves_s(w->pass, k->from, k->to,
+						       k->v2);
+	if (s >= k->least_s)
+		return;
+	k->least_s = s;
+	k->best = by;
 }
 
 /*
@@ -309,32 +328,27 @@ static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to,
  */
 static void divide_all(struct stretches *w, uint32_t from, uint32_t to)
 {
-	float *v2 = NULL;
-	double least_s = 0;
-	int best = CLASSES_MAX;
+	struct tried k = { from, to, NULL, 0, CLASSES_MAX };
 
 	for (int c = 0; c < CLASSES_MAX && is_any(w, c); c++) {
-		double s;
-
 		if (!may_pay(w, from, to, c))
 			continue;
+		if (!k.v2)
+			k.v2 = malloc((size_t)to * sizeof(*k.v2));
+		if (!k.v2)
+			return;
 		divide(w, from, to, c);
-		if (!has_stands(w, from, to))
-			continue;
-		if (!v2)
-			v2 = malloc((size_t)to * sizeof(*v2));
-		s = v2 ? pass_moves_s(w->segs, from, to, v2) : INFINITY;
-		take_stands(w, from, to);
-		if (v2 && !(least_s > 0))
-			least_s = WORTH * pass_moves_s(w->segs, from, to, v2);
-		if (s < least_s) {
-			least_s = s;
-			best = c;
-		}
+		compare(w, &k, c);
 	}
-	free(v2);
-	if (best < CLASSES_MAX)
-		divide(w, from, to, best);
+	if (k.v2) {
+		pass_stand_apart(w->pass, from, to, k.v2);
+		compare(w, &k, APART);
+	}
+	if (k.best == APART)
+		pass_stand_apart(w->pass, from, to, k.v2);
+	else if (k.best < CLASSES_MAX)
+		divide(w, from, to, k.best);
+	free(k.v2);
 }
 
 /* Up to the next node where the length passes to other axes. */
@@ -376,7 +390,7 @@ static void divide_parts(struct stretches *w, uint32_t end)
 			t = next;
 			continue;
 		}
-		set_stand(w, t.to - 1, false);
+		pass_set_stand(w->pass, t.to - 1, false);
 		t = join(&t, &next);
 	}
 	divide_all(w, t.from, t.to);
@@ -386,7 +400,7 @@ void pass_stretches(struct pass *pass)
 {
 	const struct pass_soft *k = &pass->soft;
 	struct stretches w = {
-		pass->segs, k->a_most, k->j_most, k->a_least, k->j_least
+		pass, pass->segs, k->a_most, k->j_most, k->a_least, k->j_least
 	};
 
 	if (pass->parts)
