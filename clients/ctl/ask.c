@@ -519,6 +519,7 @@ static int ahead_answer(struct ahead *h, struct ctl *c,
 		return q ? ctl_ask(c, q, ret) : 0;
 	}
 	*ret = h->answer;
+	h->answer = (struct talk_answer) { .code = 0 };
 	return answered(c, q, h->over ? h->err : -EINTR, ret);
 }
 

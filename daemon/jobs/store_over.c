@@ -14,6 +14,10 @@
 
 bool store_over_begin(struct store *s)
 {
+	/* It would begin, but take nothing: the disk was full already at the
+	 * start, and the file was opened to read (store_file_look()). */
+	if (sqlite3_db_readonly(s->db, "main"))
+		return false;
 	sqlite3_busy_timeout(s->db, 0);
 	s->over = sqlite3_exec(s->db, "PRAGMA synchronous=FULL;"
 			       "PRAGMA cache_spill=OFF;"

@@ -78,3 +78,16 @@ def test_a_queue_longer_than_an_answer_is_listed_whole(machine):
     assert c.ask("queue", "never").code == 66
     with rig.store_of(machine) as db:
         db.execute("DELETE FROM job WHERE id LIKE 'job-%'")
+
+
+def test_a_page_that_is_refused_ends_the_list_with_the_reason(machine):
+    c = machine.client
+    assert c.submit(rig.QUICK_JOB, "a", hold=True).code == 0
+    assert c.submit(rig.QUICK_JOB, "b", hold=True).code == 0
+    # It is listed as b?, which is no job: nobody knows what follows it.
+    with rig.store_of(machine) as db:
+        db.execute("UPDATE job SET id='b' || char(1) WHERE id='b'")
+    c.status_where(lambda s: s.daemon == "ok")
+    r = machine.ctl("queue")
+    assert r.returncode == 66
+    assert r.stderr.count("no such job") == 1 and len(r.stderr.split("\n")) == 2

@@ -224,23 +224,24 @@ static void neither_do_those_of_the_rest_of_a_program(void **st)
 /* Memory that is never where it was. */
 struct moving {
 	void *at;
-	size_t bytes;
+	size_t bytes, most;		/* 0: as much as is wanted */
 	int moves;
 };
 
 static void *move_on(void *arg, void *at, size_t bytes)
 {
 	struct moving *m = arg;
-	void *to = malloc(bytes);
+	void *to = m->most && bytes > m->most ? NULL : malloc(bytes);
 
-	assert_non_null(to);
+	if (!to)
+		return NULL;
 	assert_ptr_equal(at, m->at);
 	if (at) {
 		memcpy(to, at, bytes < m->bytes ? bytes : m->bytes);
 		memset(at, 0xa5, m->bytes);
 		free(at);
 	}
-	*m = (struct moving) { to, bytes, m->moves + 1 };
+	*m = (struct moving) { to, bytes, m->most, m->moves + 1 };
 	return to;
 }
 
@@ -276,6 +277,41 @@ static void nor_on_the_memory_that_becomes_the_program(void **st)
 	}
 }
 
+static struct made to_and_fro(uint32_t lines)
+{
+	const struct interp_build_options o = { .machine = &help_machine,
+						.threads = 1,
+						.memory = memory };
+	double end[INTERP_NAXES] = { 0 };
+	struct interp_build *b;
+
+	interp_build_destroy(begin(INTERP_SIMULTANEOUS));
+	b = interp_build_create(&o);
+	assert_non_null(b);
+	for (uint32_t i = 0; i < lines; i++) {
+		end[0] = i % 2;
+		line(b, end);
+	}
+	return finish(b);
+}
+
+static void a_program_needs_no_more_memory_than_it_comes_to(void **st)
+{
+	(void)st;
+	for (uint32_t lines = 2000; lines <= SEGS; lines += 2000) {
+		struct made made[2] = { to_and_fro(lines) };
+		struct moving m = { .most = made[0].bytes };
+		const struct interp_build_memory lent = { move_on, &m };
+
+		memory = &lent;
+		made[1] = to_and_fro(lines);
+		memory = NULL;
+		same(&made[0], &made[1]);
+		unmake(&made[0]);
+		unmake(&made[1]);
+	}
+}
+
 static void a_program_may_be_given_up(void **st)
 {
 	(void)st;
@@ -288,6 +324,8 @@ int main(void)
 		cmocka_unit_test(limits_do_not_depend_on_the_number_of_threads),
 		cmocka_unit_test(neither_do_those_of_the_rest_of_a_program),
 		cmocka_unit_test(nor_on_the_memory_that_becomes_the_program),
+		cmocka_unit_test(
+			a_program_needs_no_more_memory_than_it_comes_to),
 		cmocka_unit_test(a_program_may_be_given_up),
 	};
 

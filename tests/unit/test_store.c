@@ -560,6 +560,32 @@ static void a_full_disk_that_cannot_be_read_in_the_end_loses_nothing(
 
 /* -- A list that is brought to the disk in pieces ------------------------- */
 
+/* The file is opened to read, so nothing can be written over it. */
+static void a_disk_that_is_full_from_the_start_is_not_called_read_only(
+	void **state)
+{
+	struct store *s = open_store();
+	uint32_t n;
+
+	(void)state;
+	assert_int_equal(add(s, "old", &n), 0);
+	store_close(s);
+	by_hand("PRAGMA journal_mode=DELETE");	/* to have it opened, it is
+						 * written */
+	disk_fails(SQLITE_FULL);
+	s = open_store();
+	alarms(s, 0, 3);
+	assert_string_equal(store_why(s), "the disk is full");
+	assert_int_equal(store_set_state(s, n, JOB_HELD), STORE_KEPT);
+	assert_int_equal(state_in(s, "old"), JOB_HELD);
+	disk.fail_from = -1;
+	while (!store_tick(s, 10000000))
+		assert_ptr_not_equal(s->disk, NULL);
+	assert_int_equal(state_in(s, "old"), JOB_HELD);
+	assert_int_equal(alarms_on_disk(), 3);
+	store_close(s);
+}
+
 /* A store that keeps so many alarms; the disk is good again. */
 static struct store *open_with_alarms(void)
 {
@@ -1278,6 +1304,7 @@ int main(void)
 		T(what_is_written_over_a_full_disk_is_seen_by_us_alone),
 		T(a_disk_that_is_full_again_loses_nothing),
 		T(a_full_disk_that_cannot_be_read_in_the_end_loses_nothing),
+		T(a_disk_that_is_full_from_the_start_is_not_called_read_only),
 		T(what_was_kept_comes_in_pieces_and_at_once),
 		T(what_is_written_between_the_pieces_comes_with_them),
 		T(a_disk_that_fails_between_the_pieces_loses_nothing),

@@ -34,6 +34,8 @@
 /* Memory of somebody else is taken as it grows, whether it is written to or
  * not. */
 #define MORE_BYTES	(16u << 20)
+/* If there is not so much, it is taken in pieces of this, to the last one. */
+#define LEAST_BYTES	(64u << 10)
 
 static size_t next_bytes(const struct table *t)
 {
@@ -68,14 +70,24 @@ int build_table_size(struct table *t, size_t bytes)
 	return 0;
 }
 
+static int table_grow(struct table *t, size_t room)
+{
+	const int err = build_table_size(t, t->lead + room * t->size);
+
+	if (err == 0)
+		t->room = room;
+	return err;
+}
+
 int build_table_room(struct table *t, size_t n)
 {
 	while (t->room < t->n + n) {
-		const size_t room = next_room(t);
+		const size_t most = next_room(t);
+		const size_t least = t->room + LEAST_BYTES / t->size;
 
-		if (build_table_size(t, t->lead + room * t->size) < 0)
+		if (table_grow(t, most) < 0 &&
+		    (least >= most || table_grow(t, least) < 0))
 			return -ENOMEM;
-		t->room = room;
 	}
 	return 0;
 }
