@@ -529,7 +529,8 @@ int ctl_pages(struct ctl *c, const char *verb,
 	struct talk_question q = { .verb = verb };
 	const double since_s = talk_now_s();
 	json_t *page = NULL;		/* q.job is a word of it */
-	struct ahead ahead = { .over = false };
+	static struct ahead ahead;	/* interrupted, its answer may come
+					 * when this has returned */
 	struct talk_answer a;
 	size_t n = 0, all = 0;
 	int err = ctl_ask(c, &q, &a);

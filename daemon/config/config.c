@@ -56,26 +56,6 @@ static bool has(const struct machine_config *c, enum interp_axis a)
 	return c->axes.present >> a & 1;
 }
 
-/* Use the weakest of the axes that exist; rotary axes only if there are no
- * others. */
-static void travel_of(const struct machine_config *c, struct cycle_config *ret)
-{
-	double a[2] = { INFINITY, INFINITY };	/* linear, rotary */
-	double j[2] = { INFINITY, INFINITY };
-
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		enum interp_axis x = (enum interp_axis)i;
-		int rotary = interp_axis_is_rotary(x);
-
-		if (!has(c, x))
-			continue;
-		a[rotary] = fmin(a[rotary], c->axes.axis[i].a_max_mm_s2);
-		j[rotary] = fmin(j[rotary], c->axes.axis[i].j_max_mm_s3);
-	}
-	ret->travel_a_mm_s2 = isfinite(a[0]) ? a[0] : a[1];
-	ret->travel_j_mm_s3 = isfinite(j[0]) ? j[0] : j[1];
-}
-
 static uint64_t cycles_of(double s, int64_t period_ns)
 {
 	return (uint64_t)round(s * 1e9 / (double)period_ns);
@@ -195,7 +175,8 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 	ret->mcode_cycles = cycles_of(c->plc.m_timeout_s, ret->period_ns);
 	settings_of(c, ret);
 	count_periods(ret);
-	travel_of(c, ret);
+	interp_machine_travel(&c->axes, &ret->travel_a_mm_s2,
+			      &ret->travel_j_mm_s3);
 	generator_of(c, &ret->gap);
 
 	/* Round inward: to the last pulse inside the limit, never to the first

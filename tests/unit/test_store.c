@@ -558,8 +558,6 @@ static void a_full_disk_that_cannot_be_read_in_the_end_loses_nothing(
 	store_close(s);
 }
 
-/* -- A list that is brought to the disk in pieces ------------------------- */
-
 /* The file is opened to read, so nothing can be written over it. */
 static void a_disk_that_is_full_from_the_start_is_not_called_read_only(
 	void **state)
@@ -585,6 +583,8 @@ static void a_disk_that_is_full_from_the_start_is_not_called_read_only(
 	assert_int_equal(alarms_on_disk(), 3);
 	store_close(s);
 }
+
+/* -- A list that is brought to the disk in pieces ------------------------- */
 
 /* A store that keeps so many alarms; the disk is good again. */
 static struct store *open_with_alarms(void)

@@ -60,22 +60,6 @@ static void note_turn(struct pass *w, uint32_t j)
 				   w->j_mm_s3[j] * far * far);
 }
 
-/* What a positioning may have at most: as the weakest linear axis that is there
- * has it. */
-static void limit_travel(struct pass *w, const struct interp_machine *m)
-{
-	w->travel_a_mm_s2 = w->travel_j_mm_s3 = INFINITY;
-	for (uint32_t x = 0; x < INTERP_NAXES; x++) {
-		if (!(m->present >> x & 1) ||
-		    interp_axis_is_rotary((enum interp_axis)x))
-			continue;
-		w->travel_a_mm_s2 = smaller(w->travel_a_mm_s2,
-					    m->axis[x].a_max_mm_s2);
-		w->travel_j_mm_s3 = smaller(w->travel_j_mm_s3,
-					    m->axis[x].j_max_mm_s3);
-	}
-}
-
 void pass_begin(struct pass *w, const struct interp_limits *l,
 		const struct interp_program *p, struct interp_seg *segs)
 {
@@ -115,7 +99,8 @@ void pass_begin(struct pass *w, const struct interp_limits *l,
 			w->a_linear_mm_s2 = smaller(w->a_linear_mm_s2,
 						    m->a_max_mm_s2);
 	}
-	limit_travel(w, l->machine);
+	interp_machine_travel(l->machine, &w->travel_a_mm_s2,
+			      &w->travel_j_mm_s3);
 	w->alike = w->a_levels.n == 1 && w->j_levels.n == 1;
 	windows(w);
 }

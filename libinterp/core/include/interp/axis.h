@@ -51,4 +51,11 @@ static inline bool interp_axis_is_rotary(enum interp_axis a)
 	return a >= INTERP_A && a <= INTERP_C;
 }
 
+/**
+ * interp_machine_travel() - what any positioning has at most: as the weakest
+ * linear axis that is there; of rotary axes, if there are no others.
+ */
+void interp_machine_travel(const struct interp_machine *m, double *ret_a_mm_s2,
+			   double *ret_j_mm_s3);
+
 #endif /* INTERP_AXIS_H */
