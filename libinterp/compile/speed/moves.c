@@ -159,11 +159,15 @@ static uint32_t behind_stand(const struct pass *w, uint32_t at, uint32_t to)
 	return at < to ? at + 1 : to;
 }
 
+/* If fewer stands go than one for so many that stay, the next look would find
+ * hardly any, and takes as long as this one. */
+#define JOIN_SHARE	4
+
 /* Of each two moves that follow each other, take the stand away that saves too
- * little.  Return: were there any? */
+ * little.  Return: does another look pay? */
 static bool join_moves(struct pass *w, uint32_t from, uint32_t to, float *v2)
 {
-	bool any = false;
+	uint32_t kept = 0, taken = 0;
 
 	while (from < to) {
 		const uint32_t mid = behind_stand(w, from, to);
@@ -176,13 +180,14 @@ static bool join_moves(struct pass *w, uint32_t from, uint32_t to, float *v2)
 		pass_set_stand(w, mid - 1, false);
 		if (apart < PASS_WORTH * pass_moves_s(w, from, end, v2)) {
 			pass_set_stand(w, mid - 1, true);
+			kept++;
 			from = mid;
 		} else {
-			any = true;
+			taken++;
 			from = end;
 		}
 	}
-	return any;
+	return taken > kept / JOIN_SHARE;
 }
 
 #define JOIN_MOST	16		/* each may halve their number */
