@@ -109,12 +109,14 @@ double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
 	return sum;
 }
 
-/* Of what is at least so many times as soft as its neighbour ... */
+/* One side is harder than the other if it may have more than so many times its
+ * acceleration or jerk. */
 #define SOFTER	1.25
-/* ... a node no faster than this share of both is as good as a stand. */
+
+/* A corner between them is passed no faster than this share of both feeds. */
 #define SLOW	0.5f
 
-/* Of what a positioning may use of it. */
+/* Only what a positioning may use counts: @most. */
 static bool is_softer(float a, float b, double most)
 {
 	const double x = smaller((double)a, most), y = smaller((double)b, most);
