@@ -7,6 +7,7 @@ otherwise, of those that take no longer than a second.
 import json
 import os
 import random
+import re
 import resource
 import subprocess
 
@@ -35,6 +36,22 @@ def test_a_shipped_job_is_done_on_its_machine(machine, job):
         if outcome != "done":
             bad.append((seed, outcome))
     assert bad == []
+
+
+def test_the_readme_shows_what_its_command_prints(tmp_path):
+    """A line may end with "...": what follows depends on the host."""
+    readme = (ROOT / "README.md").read_text()
+    command = re.search(r"^    build/(edmsim .* --plot .*)$", readme, re.M)
+    shown = readme[command.end():].split("\n\n")[1].splitlines()
+    words = [ROOT / w if w.startswith("examples/") else w
+             for w in command.group(1).split()[1:]]
+    printed = subprocess.run([PROGRAM, *words], cwd=tmp_path, text=True,
+                             capture_output=True).stdout.splitlines()
+    assert len(printed) == len(shown) > 1
+    for told, line in zip(shown, printed):
+        told = told.strip()
+        assert (line.startswith(told[:-3]) if told.endswith("...")
+                else line == told), line
 
 
 # To start from.  Each is understood, and has the backend that its name says.
