@@ -8,6 +8,8 @@
  * the place of the tip is computed.
  */
 #include "code/tip_way.h"
+#include "interp/limits.h"
+#include "path/builder.h"
 
 #include <math.h>
 #include <string.h>
@@ -200,6 +202,64 @@ static int cut_piece(struct nc_reader *r, const struct nc_tip_way *w,
 	return 0;
 }
 
+/* Places at which the axes are looked at to see how they bend: half a piece
+ * apart, from one piece before it to one behind it. */
+#define BENDS		7
+
+/* How far it is from place to place, as the path counts it. */
+static double way_mm(const double *a, const double *b)
+{
+	const double xyz = span(a, b, INTERP_X, 3);
+	const double abc = span(a, b, INTERP_A, 3);
+
+	return build_counts(xyz * xyz, abc * abc) ? xyz : abc;
+}
+
+/* The speed along the path at which axes beside it can follow their bend over
+ * three places: the rate of each changes there, per mm of path. */
+static double follows_mm_s(const struct nc_reader *r,
+			   double q[3][INTERP_NAXES])
+{
+	const double mm[2] = { way_mm(q[0], q[1]), way_mm(q[1], q[2]) };
+	double v2 = INFINITY;
+
+	if (!(mm[0] > 0 && mm[1] > 0))
+		return INFINITY;
+	for (int i = INTERP_A; i < INTERP_NAXES; i++) {
+		const double before = (q[1][i] - q[0][i]) / mm[0];
+		const double behind = (q[2][i] - q[1][i]) / mm[1];
+		const double bend = fabs(behind - before) * 2 /
+				    (mm[0] + mm[1]);
+
+		if (bend > 0)
+			v2 = fmin(v2, INTERP_BESIDE_ACROSS *
+				  r->o->machine->axis[i].a_max_mm_s2 / bend);
+	}
+	return sqrt(v2);
+}
+
+/* The time that a piece takes at least.  Here the way is known, while limits
+ * that are found of lines afterwards cannot tell the bends of very short ones
+ * from roundings.  Beside a bend it goes no faster, because what it needs to
+ * speed up is wanted for the bend. */
+static int least_s(const struct nc_reader *r, const struct nc_tip_way *w,
+		   const struct piece *p, double *ret)
+{
+	const double half = (p->t1 - p->t0) / 2;
+	double q[BENDS][INTERP_NAXES], v = INFINITY;
+
+	for (int n = 0; n < BENDS; n++) {
+		const double t = p->t0 + (n - 2) * half;
+
+		if (axes_at(r, w, fmax(0, fmin(1, t)), q[n]))
+			return -EDOM;
+	}
+	for (int n = 0; n + 2 < BENDS; n++)
+		v = fmin(v, follows_mm_s(r, q + n));
+	*ret = way_mm(p->q0, p->q1) / v;
+	return 0;
+}
+
 static int emit_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		      const struct extent *whole, const struct piece *p)
 {
@@ -216,7 +276,10 @@ static int emit_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		if (s > 0 && fed > 0)
 			r->word.feed_mm_s = fed / s;
 	}
+	if (least_s(r, w, p, &r->word.least_s))
+		return refuse_place(r);
 	err = contour_line(&r->contour, p->q1, &r->word, r->diag);
+	r->word.least_s = 0;
 	return nc_placed(r, err, p->q1);
 }
 

@@ -401,7 +401,8 @@ void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
 		    double feed_max_mm_s)
 {
 	seg->flags = (w->rapid ? INTERP_SEG_RAPID : 0) |
-		     (w->out ? INTERP_SEG_OUT : 0) | w->ends;
+		     (w->out ? INTERP_SEG_OUT : 0) |
+		     (w->least_s > 0 ? INTERP_SEG_KNOWN : 0) | w->ends;
 	seg->feed_max_mm_s = (float)feed_max_mm_s;
 	seg->feed_mm_s = w->rapid ? seg->feed_max_mm_s : (float)w->feed_mm_s;
 }
@@ -655,7 +656,8 @@ static inline struct interp_seg line_seg(const struct build_measure *m,
 		.ticks = walked->ticks, .arg = walked->arg,
 	};
 
-	build_seg_feed(&seg, w, m->length_mm / m->seconds);
+	build_seg_feed(&seg, w,
+		       m->length_mm / larger(m->seconds, w->least_s));
 	if (!w->rapid)
 		seg.feed_mm_s *= (float)(m->length_mm / m->fed_mm);
 	return seg;

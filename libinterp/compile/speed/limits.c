@@ -293,6 +293,15 @@ static double round_bend(const struct pass *w, const struct headings *h,
 	return v / h->share;
 }
 
+/* A line that a rounding made longer on an axis seems to need more of it than
+ * the lines near to it.  A known way has no such roundings. */
+static inline double ceiling(const struct interp_seg *s, const struct rates *r)
+{
+	const double own = (double)s->feed_max_mm_s;
+
+	return s->flags & INTERP_SEG_KNOWN ? own : larger(own, r->v_mm_s);
+}
+
 /* What the axes of its bend can do.  Return: the speed. */
 static double limit_bend(struct pass *w, uint32_t i, const struct headings *h)
 {
@@ -303,7 +312,7 @@ static double limit_bend(struct pass *w, uint32_t i, const struct headings *h)
 
 	pass_rates(w, i, h, &rates);
 	w->top_mm_s[1] = rates.top_mm_s;
-	v = larger((double)s->feed_max_mm_s, rates.v_mm_s);
+	v = ceiling(s, &rates);
 	if (s->kind == INTERP_CURVE) {
 		/* What its axes leave is known already. */
 		left.a_mm_s2 = w->p->pieces[s->arg].a_mm_s2;
@@ -325,7 +334,7 @@ COLUMNS_INLINE double limit_line(struct pass *w, uint32_t i,
 	near_rates(w, i, h, &rates, near_usual(n), n);
 	soften_line(w, &w->segs[i], &rates, n);
 	w->top_mm_s[1] = rates.top_mm_s;
-	return larger((double)w->segs[i].feed_max_mm_s, rates.v_mm_s);
+	return ceiling(&w->segs[i], &rates);
 }
 
 /* The same of a line that is not short. */

@@ -136,6 +136,10 @@ enum interp_aux {
 /* Behind M5: written as a cut, and positioned. */
 #define INTERP_SEG_OFF		0x40
 
+/* A part of a known way: its feed_max_mm_s is what its axes can follow there.
+ * What lines near to it show is not better. */
+#define INTERP_SEG_KNOWN	0x80
+
 /* Any of these: nothing is cut on it. */
 #define INTERP_SEG_UNCUT	(INTERP_SEG_RAPID | INTERP_SEG_SENSED | \
 				 INTERP_SEG_OFF)
