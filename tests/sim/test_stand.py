@@ -9,6 +9,9 @@ from test_dense import dry_s, limits, machine
 
 POLYGONS = 20
 
+# Stands are left out that save less than a twentieth; a dwell takes a little.
+MOST = 1.06
+
 
 def polygon(rng, turns):
     """Its lines; C turns by up to 20 degrees on each if @turns."""
@@ -23,8 +26,8 @@ def polygon(rng, turns):
     return lines
 
 
-def text(lines):
-    return "\n".join(["G21 G90 F6000", *lines, "M2", ""])
+def text(lines, feed=6000):
+    return "\n".join([f"G21 G90 F{feed}", *lines, "M2", ""])
 
 
 def with_stands(lines):
@@ -42,7 +45,47 @@ def test_sides_that_turn_c_take_no_longer_than_with_stands(tmp_path):
         lines = polygon(rng, True)
         shares[seed] = (dry_s(of, text(lines)) /
                         dry_s(of, text(with_stands(lines))))
-    assert not {k: round(x, 3) for k, x in shares.items() if x > 1 / 0.9}
+    assert not {k: round(x, 3) for k, x in shares.items() if x > MOST}
+
+
+def zigzag(length, deg):
+    """Lines on which C stays, and lines on which it turns, in turn."""
+    x, c, lines = 0, 0, []
+    for i in range(12):
+        x += length if i % 2 else length / 10
+        c += deg if i % 2 else 0
+        lines.append(f"G1 X{x:.3f} Y{length if i % 2 else 0:.3f} C{c:.3f}")
+    return lines
+
+
+def test_short_sides_take_no_longer_than_with_stands(tmp_path):
+    """They never come to the speed that their axes may go at.  With the ramps to
+    that speed, stands seemed not to pay: up to 1.35 times as long."""
+    shares = {}
+    for seed in range(POLYGONS):
+        rng = random.Random(seed)
+        axes = {axis: (100, 10 ** rng.uniform(1.5, 2.5),
+                       10 ** rng.uniform(3, 6)) for axis in "XYZ"}
+        of = machine(tmp_path, {**axes, "C": (20, 10 ** rng.uniform(1, 2.5),
+                                              10 ** rng.uniform(2, 3))})
+        lines = zigzag(10 ** rng.uniform(-0.6, 0), rng.uniform(0.5, 5))
+        shares[seed] = (dry_s(of, text(lines)) /
+                        dry_s(of, text(with_stands(lines))))
+    assert not {k: round(x, 3) for k, x in shares.items() if x > MOST}
+
+
+def test_stands_cost_next_to_nothing_at_a_slow_f(tmp_path):
+    """At F the corners are passed without slowing down; a stand in each of them,
+    which a rapid gains by, took 1.24 times as long."""
+    of = machine(tmp_path, {"C": (60, 10, 200)})
+    for length, deg, feed in (0.1, 0.1, 20), (0.5, 0.1, 60), (0.3, 0.2, 10):
+        x, lines = 0, []
+        for i in range(40):
+            x += 0 if i % 2 else length
+            y, c = (length / 2, deg) if i % 4 in (1, 2) else (0, 0)
+            lines.append(f"G1 X{x:.3f} Y{y:.3f} C{c:.3f}")
+        at_f_s = 20 * 1.5 * length / feed * 60
+        assert dry_s(of, text(lines, feed)) <= 1.06 * at_f_s
 
 
 def test_sides_of_harder_axes_are_no_reason_to_stand(tmp_path):

@@ -5,7 +5,8 @@
  *
  * A move has the least acceleration and jerk of its segments.  Its speed at
  * each node is found forward and back, as without a limit of jerk, but with as
- * much less acceleration as the jerk takes from a ramp to its mean speed.
+ * much less acceleration as the jerk takes from a ramp between its slow nodes
+ * and what it comes to between them.
  */
 #include "speed/pass.h"
 
@@ -14,12 +15,20 @@
 /* Segments @from up to, but not with, @to. */
 struct move {
 	uint32_t from, to;
-	double a_mm_s2;
+	bool fed;			/* no faster than F */
+	double a_mm_s2, j_mm_s3;	/* the least of them */
+	double slope_mm_s2;		/* the mean of a ramp */
 };
 
 static bool is_way(const struct interp_seg *s)
 {
 	return s->kind < INTERP_BEGIN && s->length_mm > 0;
+}
+
+static double ceiling_mm_s(const struct interp_seg *s, bool fed)
+{
+	return (double)(fed ? pass_least(s->feed_mm_s, s->feed_max_mm_s) :
+			      s->feed_max_mm_s);
 }
 
 /* What is left of acceleration @a, in the mean of a ramp to @v. */
@@ -28,25 +37,99 @@ static double slope_mm_s2(double v, double a, double j)
 	return v * j >= a * a ? v / (v / a + a / j) : sqrt(v * j) / 2;
 }
 
+/* How much faster it gets on @mm, from a stand and back to one. */
+static double rise_mm_s(double mm, double a, double j)
+{
+	return smaller(sqrt(a * mm), cbrt(j * mm * mm / 4));
+}
+
+/* A node is slow if it is passed no faster than this share of what its sides
+ * come to. */
+#define SLOW	0.5
+
+/* What segment @s comes to, between nodes of @from and @to mm/s.  Short lines
+ * that bend are not faster than their nodes. */
+static double comes_to_mm_s(const struct interp_seg *s, const struct move *m,
+			    double from, double to)
+{
+	const double top = ceiling_mm_s(s, m->fed), node = larger(from, to);
+	double v;
+
+	if (node >= top)
+		return top;
+	v = smaller(top, node + sqrt(m->a_mm_s2 * s->length_mm));
+	if (smaller(from, to) >= SLOW * v)
+		return v;
+	return smaller(v, node + rise_mm_s(s->length_mm, m->a_mm_s2,
+					   m->j_mm_s3));
+}
+
+/* Between two slow nodes. */
+struct hop {
+	double mm, s;
+	double node_mm_s;		/* the mean of both */
+};
+
+/* By how much it gets faster than its nodes. */
+static double hop_rise_mm_s(const struct hop *k, const struct move *m)
+{
+	const double v = k->mm / k->s, node = k->node_mm_s;
+	const double rise = rise_mm_s(k->mm, m->a_mm_s2, m->j_mm_s3);
+	const double share = rise / (rise + 2 * node);
+
+	return smaller(larger(v - node, SLOW * v), rise * cbrt(share * share));
+}
+
+/* What the jerk leaves in the mean of the ramps of move @m: between slow nodes
+ * they may be over long before they come to the ceiling. */
+static double move_slope_mm_s2(const struct interp_seg *segs,
+			       const struct move *m)
+{
+	struct hop hop = { 0, 0, 0 };
+	double from = 0, sum = 0, s = 0;
+
+	for (uint32_t i = m->from; i < m->to; i++) {
+		const struct interp_seg *k = &segs[i];
+		const bool ends = i + 1 == m->to;
+		const double to = ends ? 0 : (double)k->node_mm_s;
+		double v = 0, rise, t;
+
+		if (is_way(k)) {
+			v = comes_to_mm_s(k, m, from, to);
+			hop.mm += k->length_mm;
+			hop.s += k->length_mm / v;
+			from = to;
+		}
+		if (!(hop.mm > 0) || (!ends && to >= SLOW * v))
+			continue;
+		hop.node_mm_s += to / 2;
+		rise = hop_rise_mm_s(&hop, m);
+		t = hop.mm / (hop.node_mm_s + rise);
+		sum += rise * t;
+		s += t;
+		hop = (struct hop) { 0, 0, to / 2 };
+	}
+	return s > 0 ? slope_mm_s2(sum / s, m->a_mm_s2, m->j_mm_s3) : INFINITY;
+}
+
 /* Up to the next stand. */
-static struct move next_move(const struct pass *w, uint32_t from, uint32_t to)
+static struct move next_move(const struct pass *w, uint32_t from, uint32_t to,
+			     bool fed)
 {
 	const struct interp_seg *segs = w->segs;
-	struct move ret = { from, from, INFINITY };
-	double a = w->travel_a_mm_s2, j = w->travel_j_mm_s3, mm = 0, s = 0;
+	struct move ret = {
+		from, from, fed, w->travel_a_mm_s2, w->travel_j_mm_s3, 0
+	};
 
 	do {
 		const struct interp_seg *k = &segs[ret.to++];
 
 		if (!is_way(k))
 			continue;
-		a = smaller(a, (double)k->a_mm_s2);
-		j = smaller(j, (double)k->j_mm_s3);
-		mm += k->length_mm;
-		s += k->length_mm / (double)k->feed_max_mm_s;
+		ret.a_mm_s2 = smaller(ret.a_mm_s2, (double)k->a_mm_s2);
+		ret.j_mm_s3 = smaller(ret.j_mm_s3, (double)k->j_mm_s3);
 	} while (ret.to < to && !(segs[ret.to - 1].flags & INTERP_SEG_STAND));
-	if (mm > 0)
-		ret.a_mm_s2 = slope_mm_s2(mm / s, a, j);
+	ret.slope_mm_s2 = move_slope_mm_s2(segs, &ret);
 	return ret;
 }
 
@@ -59,11 +142,11 @@ static void speeds(const struct interp_seg *segs, const struct move *m,
 	for (uint32_t i = m->from; i < m->to; i++) {
 		const struct interp_seg *s = &segs[i];
 		const double most = smaller((double)s->node_mm_s,
-					    (double)s->feed_max_mm_s);
+					    ceiling_mm_s(s, m->fed));
 
 		if (is_way(s))
 			at = smaller(most * most,
-				     at + 2 * m->a_mm_s2 * s->length_mm);
+				     at + 2 * m->slope_mm_s2 * s->length_mm);
 		v2[i] = (float)at;
 	}
 	at = 0;
@@ -71,14 +154,15 @@ static void speeds(const struct interp_seg *segs, const struct move *m,
 		v2[i] = (float)smaller((double)v2[i], at);
 		at = (double)v2[i];
 		if (is_way(&segs[i]))
-			at += 2 * m->a_mm_s2 * segs[i].length_mm;
+			at += 2 * m->slope_mm_s2 * segs[i].length_mm;
 	}
 }
 
 /* From the speed whose square is @b2 to that of @e2. */
-static double way_s(const struct interp_seg *s, double a, double b2, double e2)
+static double way_s(const struct interp_seg *s, const struct move *m,
+		    double b2, double e2)
 {
-	const double feed = (double)s->feed_max_mm_s;
+	const double feed = ceiling_mm_s(s, m->fed), a = m->slope_mm_s2;
 	const double top2 = smaller(feed * feed,
 				    (b2 + e2) / 2 + a * s->length_mm);
 	const double top = sqrt(top2);
@@ -88,20 +172,20 @@ static double way_s(const struct interp_seg *s, double a, double b2, double e2)
 }
 
 double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
-		    float *v2)
+		    bool fed, float *v2)
 {
 	const struct interp_seg *segs = w->segs;
 	double sum = 0;
 
 	while (from < to) {
-		const struct move m = next_move(w, from, to);
+		const struct move m = next_move(w, from, to, fed);
 		double at = 0;
 
 		speeds(segs, &m, v2);
 		for (uint32_t i = m.from; i < m.to; i++) {
 			if (!is_way(&segs[i]))
 				continue;
-			sum += way_s(&segs[i], m.a_mm_s2, at, (double)v2[i]);
+			sum += way_s(&segs[i], &m, at, (double)v2[i]);
 			at = (double)v2[i];
 		}
 		from = m.to;
@@ -112,9 +196,6 @@ double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
 /* One side is harder than the other if it may have more than so many times its
  * acceleration or jerk. */
 #define SOFTER	1.25
-
-/* A corner between them is passed no faster than this share of both feeds. */
-#define SLOW	0.5f
 
 /* Only what a positioning may use counts: @most. */
 static bool is_softer(float a, float b, double most)
@@ -127,8 +208,10 @@ static bool is_softer(float a, float b, double most)
 static bool is_apart(const struct pass *w, const struct interp_seg *a,
 		     const struct interp_seg *b)
 {
-	return a->node_mm_s < SLOW * a->feed_max_mm_s &&
-	       a->node_mm_s < SLOW * b->feed_max_mm_s &&
+	const double node = (double)a->node_mm_s;
+
+	return node < SLOW * (double)a->feed_max_mm_s &&
+	       node < SLOW * (double)b->feed_max_mm_s &&
 	       (is_softer(a->a_mm_s2, b->a_mm_s2, w->travel_a_mm_s2) ||
 		is_softer(a->j_mm_s3, b->j_mm_s3, w->travel_j_mm_s3));
 }
@@ -161,6 +244,25 @@ static uint32_t behind_stand(const struct pass *w, uint32_t at, uint32_t to)
 	return at < to ? at + 1 : to;
 }
 
+/* A stand is in the node before @mid.  Does it pay, in the move from @from to
+ * @to?  It is taken away if it does not. */
+static bool stand_pays(struct pass *w, uint32_t from, uint32_t mid,
+		       uint32_t to, float *v2)
+{
+	double apart = pass_moves_s(w, from, to, false, v2);
+
+	pass_set_stand(w, mid - 1, false);
+	if (apart >= PASS_WORTH * pass_moves_s(w, from, to, false, v2))
+		return false;
+	pass_set_stand(w, mid - 1, true);
+	apart = pass_moves_s(w, from, to, true, v2);
+	pass_set_stand(w, mid - 1, false);
+	if (apart >= PASS_COST * pass_moves_s(w, from, to, true, v2))
+		return false;
+	pass_set_stand(w, mid - 1, true);
+	return true;
+}
+
 /* If fewer stands go than one for so many that stay, the next look would find
  * hardly any, and takes as long as this one. */
 #define JOIN_SHARE	4
@@ -174,14 +276,10 @@ static bool join_moves(struct pass *w, uint32_t from, uint32_t to, float *v2)
 	while (from < to) {
 		const uint32_t mid = behind_stand(w, from, to);
 		const uint32_t end = behind_stand(w, mid, to);
-		double apart;
 
 		if (mid == to)
 			break;
-		apart = pass_moves_s(w, from, end, v2);
-		pass_set_stand(w, mid - 1, false);
-		if (apart < PASS_WORTH * pass_moves_s(w, from, end, v2)) {
-			pass_set_stand(w, mid - 1, true);
+		if (stand_pays(w, from, mid, end, v2)) {
 			kept++;
 			from = mid;
 		} else {

@@ -684,13 +684,15 @@ void pass_stretches(struct pass *w);
  * pass_moves_s() - the time of segments @from up to, but not with, @to, by
  * moves that stand in the flagged nodes and at both ends.
  *
+ * @fed: they keep to F; otherwise they are jumps or rapids.
  * @v2: room for @to numbers.
  */
 double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
-		    float *v2);
+		    bool fed, float *v2);
 
-/* Stands must save so much of the time. */
-#define PASS_WORTH	0.9
+/* Stands must save so much of the time, and at F they may cost so much. */
+#define PASS_WORTH	0.95
+#define PASS_COST	1.02
 
 /**
  * pass_stand_apart() - flag the corners between sides that are softer and

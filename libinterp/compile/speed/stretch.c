@@ -262,6 +262,9 @@ static double divide(struct stretches *w, uint32_t from, uint32_t to, int c)
  * cruise and one ramp, by less than this. */
 #define RAMP_MOST	1.1
 
+/* What can save no tenth is not worth the time of looks. */
+#define LOOK_WORTH	0.9
+
 /*
  * May stands save enough?  No division takes less than all at the speed that is
  * allowed; and one move over all no more than that, and a ramp for each time
@@ -286,7 +289,7 @@ static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to,
 		ramps += is_above(&k, s) != was;
 		was = is_above(&k, s);
 	}
-	return all.cruise_s < PASS_WORTH * (all.cruise_s + RAMP_MOST * ramps *
+	return all.cruise_s < LOOK_WORTH * (all.cruise_s + RAMP_MOST * ramps *
 				       ramp_s(&all, most_mm_s));
 }
 
@@ -298,22 +301,31 @@ struct tried {
 	uint32_t from, to;
 	float *v2;			/* room for the speeds */
 	double least_s;			/* 0: not known */
+	double fed_most_s;		/* at F */
 	int best;			/* class; CLASSES_MAX: no stands */
 };
 
 /* The stands that are there, and will not be then, with the best so far. */
 static void compare(struct stretches *w, struct tried *k, int by)
 {
-	double s;
+	double s, fed_s;
 
 	if (!has_stands(w, k->from, k->to))
 		return;
-	s = pass_moves_s(w->pass, k->from, k->to, k->v2);
+	s = pass_moves_s(w->pass, k->from, k->to, false, k->v2);
+	if (k->least_s > 0 && s >= k->least_s) {
+		take_stands(w, k->from, k->to);
+		return;
+	}
+	fed_s = pass_moves_s(w->pass, k->from, k->to, true, k->v2);
 	take_stands(w, k->from, k->to);
-	if (!(k->least_s > 0))
+	if (!(k->least_s > 0)) {
 		k->least_s = PASS_WORTH * pass_moves_s(w->pass, k->from, k->to,
-						       k->v2);
-	if (s >= k->least_s)
+						       false, k->v2);
+		k->fed_most_s = PASS_COST * pass_moves_s(w->pass, k->from,
+							 k->to, true, k->v2);
+	}
+	if (s >= k->least_s || fed_s >= k->fed_most_s)
 		return;
 	k->least_s = s;
 	k->best = by;
@@ -328,7 +340,7 @@ static void compare(struct stretches *w, struct tried *k, int by)
  */
 static void divide_all(struct stretches *w, uint32_t from, uint32_t to)
 {
-	struct tried k = { from, to, NULL, 0, CLASSES_MAX };
+	struct tried k = { from, to, NULL, 0, 0, CLASSES_MAX };
 
 	for (int c = 0; c < CLASSES_MAX && is_any(w, c); c++) {
 		if (!may_pay(w, from, to, c))
