@@ -36,7 +36,7 @@ static struct {
 	double a, j, f;
 } seen;
 
-/* A curve from the place where a program stands, and what it is beside X Y Z. */
+/* A curve; the columns behind @counted are beside the path. */
 struct way {
 	double points[POINTS_MAX][COLUMNS + 1];
 	double knots[POINTS_MAX + DEGREE + 1];
@@ -76,7 +76,8 @@ static void cusp(struct way *w, uint64_t *s, double off)
 {
 	way_begin(w, s, 4);
 	for (uint32_t j = 0; j < COLUMNS; j++) {
-		const double on = j < w->counted ? 0 : pow(10, uniform(s, 0, 2));
+		const double on = j < w->counted ? 0 :
+				  pow(10, uniform(s, 0, 2));
 		const double k[3] = {
 			on + off * uniform(s, -1, 1),
 			uniform(s, -0.2, 0.2) * on +
