@@ -22,8 +22,8 @@ MM = 20
 # Time of dense lines with three decimals, as a share of the longer one of two:
 # with six; and in long lines, of which no axis follows the curve.
 GOAL = 1.005
-MOST = 1.02
-OVER_GOAL = 6           # of all programs
+MOST = 1.015
+OVER_GOAL = 4           # of all programs
 
 
 def curve(rng):
@@ -153,7 +153,7 @@ def comb_text(step, mm):
     return "\n".join(lines + ["M2", ""])
 
 
-@pytest.mark.parametrize("step", [0.5, 1, 2])
+@pytest.mark.parametrize("step", [0.3, 0.5, 1, 2])
 def test_two_corners_near_to_each_other_are_no_bend(tmp_path, step):
     of = machine(tmp_path, {"X": (80, 1000, 20000), "Y": (80, 1000, 20000)})
     long = dry_s(of, comb_text(step, None))
@@ -346,3 +346,47 @@ def test_a_side_on_which_c_turns_far_is_a_move_of_its_own(tmp_path):
             shares[seed, mm] = took(mm) / long
     assert not {k: round(x, 4) for k, x in shares.items()
                 if x > (1.18 if k[1] < 0.02 else MOST)}
+
+
+def arcs_and_corners_text(rng, mm):
+    """Lines and arcs, a corner between each two of them; the arcs in lines of
+    @mm too, None: whole."""
+    x, y, a, lines = 0, 0, rng.uniform(0, 7), ["G21 G90 F6000"]
+    for i in range(8):
+        r = 10 ** rng.uniform(-0.3, 1)
+        way = rng.uniform(2, 12) if i % 2 == 0 else r * rng.uniform(0.3, 3)
+        left, a = rng.choice([-1, 1]), a + rng.uniform(-2.8, 2.8)
+        n = max(1, round(way / mm)) if mm else 1
+        at_x, at_y = x - left * r * math.sin(a), y + left * r * math.cos(a)
+        for k in range(1, n + 1):
+            s, to = way * k / n, a + left * way * k / n / r
+            u, v, word = x + s * math.cos(a), y + s * math.sin(a), "G1"
+            if i % 2:
+                u = at_x + left * r * math.sin(to)
+                v = at_y - left * r * math.cos(to)
+                word = "G1" if mm else "G3" if left > 0 else "G2"
+            centre = f" I{at_x - x:.6f} J{at_y - y:.6f}"
+            lines.append(f"{word} X{u:.4f} Y{v:.4f}" +
+                         (centre if word != "G1" else ""))
+        x, y, a = u, v, to if i % 2 else a
+    return "\n".join(lines + ["M2", ""])
+
+
+def test_arcs_between_corners_are_no_tighter_beside_these(tmp_path):
+    """Windows beside a corner took it for a bend of the path, and the direction
+    of one window for the bend of another; the whole way had as little
+    acceleration as that left."""
+    shares = {}
+    for seed in range(40):
+        rng = random.Random(seed)
+        of = machine(tmp_path, {axis: (
+            rng.randint(20, 120), round(10 ** rng.uniform(1.7, 3.3)),
+            round(10 ** rng.uniform(4, 5.3))) for axis in "XY"})
+
+        def took(mm):
+            return dry_s(of, arcs_and_corners_text(random.Random(seed), mm))
+
+        long = took(None)
+        for mm in 0.05, 0.02, 0.01:
+            shares[seed, mm] = took(mm) / long
+    assert not {k: round(x, 4) for k, x in shares.items() if x > 1.01}

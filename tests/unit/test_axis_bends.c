@@ -120,6 +120,42 @@ static struct made sway(uint64_t *s)
 	return wavy(&k, mm);
 }
 
+/* Lines and arcs with a corner between, in lines of @mm, rounded to
+ * @round_mm. */
+static struct made cornered(uint64_t *s)
+{
+	const struct interp_build_word w = {
+		.line = 1, .feed_mm_s = 80, .rapid = true,
+	};
+	const double mm = pow(10, uniform(s, -2, -1));
+	const double round_mm = rnd(s) % 2 ? 0.001 : 1e-6;
+	double at[2] = { 0, 0 }, way = uniform(s, 0, 6.28);
+	struct interp_build *b = build_begin();
+
+	for (int i = 0; i < 8; i++) {
+		const double r = i % 2 ? pow(10, uniform(s, -0.3, 1)) : 1e9;
+		const double long_mm = i % 2 ? fmin(r * uniform(s, 0.3, 3), 9) :
+					       uniform(s, 1, 9);
+		const int n = (int)ceil(long_mm / mm);
+		const double turn = (rnd(s) % 2 ? 1 : -1) * long_mm / r / n;
+
+		way += turn / 2;
+		for (int k = 0; k < n; k++, way += turn) {
+			double end[INTERP_NAXES] = { 0 };
+			struct interp_diag d;
+
+			for (int j = 0; j < 2; j++) {
+				at[j] += long_mm / n *
+					 (j ? sin(way) : cos(way));
+				end[j] = round(at[j] / round_mm) * round_mm;
+			}
+			assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+		}
+		way += uniform(s, -2.8, 2.8);
+	}
+	return finish(b);
+}
+
 static struct made of_text(const struct text *t)
 {
 	struct interp_kinematics k;
@@ -282,6 +318,12 @@ static void ways_that_bend_to_and_fro_keep_the_limits(void **st)
 	try(sway, (struct most) { MOST_A, MOST_J });
 }
 
+static void so_do_lines_and_arcs_with_corners(void **st)
+{
+	(void)st;
+	try(cornered, (struct most) { MOST_A, MOST_J });
+}
+
 /* Over all waves between these places; what the ends are slower by is not of
  * them. */
 static double mean_mm_s(struct made m, double from_mm, double to_mm)
@@ -376,6 +418,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(ways_that_bend_to_and_fro_keep_the_limits),
+		cmocka_unit_test(so_do_lines_and_arcs_with_corners),
 		cmocka_unit_test(so_do_ways_that_bend_quickly),
 		cmocka_unit_test(arcs_of_a_leaning_tool_keep_the_limits),
 		cmocka_unit_test(bodies_keep_the_limits),

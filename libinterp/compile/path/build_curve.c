@@ -29,6 +29,7 @@
 #define CUSP_HALVINGS	60
 #define STOP_PULSES	0.02		/* error of a stop's place, of the axis
 					 * that is fastest there */
+#define OTHERS_MOST	1.0		/* a degree is a mm */
 #define RATE_MOST	100		/* but near a cusp */
 #define MARGIN		1.02		/* factor for the number of places */
 #define TRIES		24
@@ -175,9 +176,9 @@ static int piece_add(struct curve_plan *p, double to)
 	struct build_step step = { .seg = { .kind = INTERP_CURVE },
 				   .moved = p->moved, .end_mm = end_mm };
 	struct interp_piece piece, *stored;
-	int err = add_stops(p, to, &piece);
+	int err = p->scouts ? 0 : add_stops(p, to, &piece);
 
-	if (err < 0)
+	if (err < 0 || p->scouts)
 		return err;
 	end_of(p, to, end_mm);
 	step.seg.length_mm = stops_of(p, &piece)[piece.nstops - 1].s_mm;
@@ -196,6 +197,9 @@ static int piece_add(struct curve_plan *p, double to)
 		return -ENOMEM;
 	*stored = piece;
 	p->word.line = build_curve_line(p, p->from);
+	if (p->weighed)
+		p->word.feed_mm_s = p->feed_mm_s /
+				    fmax(p->seen.counted, p->curve.others);
 	return build_step(p->b, &step, &p->word, p->diag);
 }
 
@@ -350,13 +354,41 @@ static int along(struct curve_plan *p)
 	return err;
 }
 
+/*
+ * Where the axes that count turn back or stand, those beside the path go on
+ * over next to no length.  There they would allow next to no speed and
+ * acceleration along it.  So on such a curve they count more: twice as much,
+ * until they allow the speed that those that count never go below.
+ */
+static int weigh(struct curve_plan *p)
+{
+	struct interp_curve *stored = p->b->curves.at;
+	int err = 0;
+
+	stored += p->b->curves.n - 1;
+	p->scouts = true;
+	for (;;) {
+		p->beside_mm_s = HUGE_VAL;
+		err = along(p);
+		if (err < 0 || p->beside_mm_s >= p->slowest_mm_s ||
+		    2 * p->curve.others > OTHERS_MOST)
+			break;
+		p->curve.others *= 2;
+		p->walk.eval.c.others = stored->others = p->curve.others;
+		p->weighed = true;
+	}
+	p->scouts = false;
+	return err;
+}
+
 int interp_build_curve(struct interp_build *b,
 		       const struct interp_build_curve *c,
 		       const struct interp_build_word *w,
 		       struct interp_diag *diag)
 {
 	struct curve_plan p = { .b = b, .c = c, .word = *w, .diag = diag,
-				.here_mm = b->here_mm };
+				.here_mm = b->here_mm,
+				.feed_mm_s = w->feed_mm_s };
 	struct interp_nurbs n;
 	int err = interp_build_flush(b, diag);
 
@@ -380,5 +412,7 @@ int interp_build_curve(struct interp_build *b,
 	p.turns = pulse_curve_turns(b->o.strategy, n.naxes);
 	build_curve_limit(&p);
 	err = build_curve_check_way(&p);
+	if (err == 0 && p.curve.counted < p.curve.naxes)
+		err = weigh(&p);
 	return err == 0 ? along(&p) : err;
 }

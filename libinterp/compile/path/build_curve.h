@@ -25,6 +25,8 @@ int build_curve_store(struct interp_build *b,
 /* What the looks at a piece have found; the largest of each. */
 struct curve_seen {
 	double bend;			/* curvature; HUGE_VAL: a cusp */
+	double counted;			/* mm of the axes that count, in one of
+					 * the length */
 	double d[3][INTERP_NAXES];	/* |x_s|, |x_ss| and |x_sss| of each
 					 * column */
 };
@@ -50,6 +52,12 @@ struct curve_plan {
 	double pulses_mm[INTERP_NAXES];	/* of each axis */
 	double pulse_mm;		/* the finest */
 	double slowest_mm_s;			/* never less */
+	double feed_mm_s;		/* as programmed: of axes that count */
+	bool weighed;			/* those beside the path count more than
+					 * on other curves */
+	bool scouts;			/* only looks, adds no piece */
+	double beside_mm_s;		/* the least that axes beside the path
+					 * allow */
 	double a_mm_s2, j_mm_s3;		/* of the weakest axis */
 	uint32_t moved, turns;
 	struct interp_curve_walk walk;

@@ -69,8 +69,12 @@ void build_curve_limit(struct curve_plan *p)
 static void learn(struct curve_plan *p, const struct interp_nurbs_way *w)
 {
 	struct curve_seen *s = &p->seen;
+	double counted = 0;
 
 	s->bend = fmax(s->bend, w->cusp ? HUGE_VAL : w->curvature);
+	for (uint32_t k = 0; !w->cusp && k < p->curve.counted; k++)
+		counted += w->d[0][k] * w->d[0][k];
+	s->counted = fmax(s->counted, sqrt(counted));
 	for (int n = 0; !w->cusp && n < 3; n++)
 		for (uint32_t k = 0; k < p->curve.naxes; k++)
 			s->d[n][k] = fmax(s->d[n][k], fabs(w->d[n][k]));
@@ -104,7 +108,7 @@ static double beside_mm_s(const struct curve_plan *p,
 		v = fmin(v, fmin(l->v_mm_s[k] / fabs(w->d[0][k]),
 				 fmin(sqrt(l->a_mm_s2[k] / fabs(w->d[1][k])),
 				      cbrt(l->j_mm_s3[k] / fabs(w->d[2][k])))));
-	return fmax(w->cusp ? 0 : v, SLOWEST_BESIDE * p->slowest_mm_s);
+	return v;
 }
 
 struct curve_look build_curve_look(struct curve_plan *p, double u)
@@ -119,8 +123,12 @@ struct curve_look build_curve_look(struct curve_plan *p, double u)
 	v = fmin(interp_nurbs_feed_mm_s(&e->c, &w, &p->limits),
 		 set_off_mm_s(p, &w, 0, p->curve.counted));
 	ret.mm_s = fmax(v, p->slowest_mm_s);
-	if (p->curve.counted < p->curve.naxes)
-		ret.mm_s = fmin(ret.mm_s, beside_mm_s(p, &w));
+	if (p->curve.counted < p->curve.naxes) {
+		v = beside_mm_s(p, &w);
+		p->beside_mm_s = fmin(p->beside_mm_s, v);
+		v = fmax(w.cusp ? 0 : v, SLOWEST_BESIDE * p->slowest_mm_s);
+		ret.mm_s = fmin(ret.mm_s, v);
+	}
 	if (w.cusp)
 		return ret;
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {

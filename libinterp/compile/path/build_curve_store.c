@@ -4,7 +4,8 @@
  *
  * Columns that stand still are left out.  The axes that count for the length
  * come first: the linear axes, as elsewhere.  The others count a little, so
- * that a stretch where only they move has a length that can be walked.
+ * that a stretch where only they move has a length that can be walked; more
+ * where they need it (build_curve.c).
  */
 #include "path/build_curve.h"
 #include "path/builder.h"

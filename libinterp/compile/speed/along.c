@@ -26,7 +26,7 @@ static bool takes(const struct pass *w, const struct bent *is, uint32_t column,
 }
 
 void pass_note_way(struct pass *w, uint32_t before, uint32_t behind,
-		   const struct bent *is, double v_mm_s)
+		   const struct way_bend *b)
 {
 	struct bent_ways *k = &w->bent_ways;
 
@@ -34,7 +34,9 @@ void pass_note_way(struct pass *w, uint32_t before, uint32_t behind,
 	pass_way_known(w);
 	k->behind = behind;
 	for (uint32_t j = 0; j < w->n; j++) {
-		if (!(is[j].bend > 0) || !takes(w, &is[j], j, v_mm_s))
+		const struct bent *is = &b->is[j];
+
+		if (!(is->bend > 0) || !takes(w, is, j, b->v_mm_s))
 			continue;
 		if (k->n == k->room &&
 		    grow_array(&k->at, &k->room, sizeof(*k->at)) < 0) {
@@ -42,8 +44,8 @@ void pass_note_way(struct pass *w, uint32_t before, uint32_t behind,
 			return;
 		}
 		k->at[k->n++] = (struct bent_way) {
-			before, behind, j, (float)is[j].bend,
-			(float)is[j].change, (float)is[j].rate
+			before, behind, j, (float)is->bend, (float)is->change,
+			(float)is->rate, (float)b->all
 		};
 		k->last++;
 	}
@@ -53,11 +55,13 @@ void pass_way_on(struct pass *w, uint32_t i, const struct heading *a,
 		 const struct heading *b)
 {
 	struct way_on *k = &w->gate.way;
-	struct bent is[INTERP_NAXES];
+	struct way_bend to = {
+		.all = k->bend, .v_mm_s = smaller(k->most_mm_s, k->v_mm_s),
+	};
+	struct bent *is = to.is;
 	double sum = 0;
 
 	for (uint32_t j = 0; j < w->n; j++) {
-		is[j] = (struct bent) { 0 };
 		if (!(a->along & b->along & 1u << j))
 			continue;
 		is[j].bend = fabs(b->rate[j] - a->rate[j]);
@@ -68,7 +72,7 @@ void pass_way_on(struct pass *w, uint32_t i, const struct heading *a,
 	sum = sqrt(sum);
 	for (uint32_t j = 0; j < w->n; j++)
 		is[j].bend *= k->bend / sum;
-	pass_note_way(w, i - 1, i, is, smaller(k->most_mm_s, k->v_mm_s));
+	pass_note_way(w, i - 1, i, &to);
 	k->same_mm = w->segs[i].s_mm + PASS_SAME_WAY / k->bend;
 }
 
@@ -149,7 +153,8 @@ static double goes_on(const struct pass *w, uint32_t i, uint32_t along,
 double pass_arch(struct pass *w, uint32_t i, uint32_t along, double most_mm_s)
 {
 	double here[INTERP_NAXES], sum = 0, share, v;
-	struct bent is[INTERP_NAXES] = { 0 };
+	struct way_bend to = { .all = 0 };
+	struct bent *is = to.is;
 	struct weakest weakest;
 	uint32_t moves = 0;
 
@@ -167,10 +172,12 @@ double pass_arch(struct pass *w, uint32_t i, uint32_t along, double most_mm_s)
 	if (!(sum > 0))
 		return INFINITY;
 	weakest = pass_weakest(w, moves);
-	v = pass_arc_mm_s(&weakest, sqrt(sum));
-	pass_note_way(w, i - 1, i, is, smaller(v, most_mm_s));
+	to.all = sqrt(sum);
+	v = pass_arc_mm_s(&weakest, to.all);
+	to.v_mm_s = smaller(v, most_mm_s);
+	pass_note_way(w, i - 1, i, &to);
 	pass_way_begin(w, i, &(struct way_on) {
-		.bend = sqrt(sum), .most_mm_s = most_mm_s, .v_mm_s = v,
+		.bend = to.all, .most_mm_s = most_mm_s, .v_mm_s = v,
 	});
 	return v;
 }

@@ -314,6 +314,15 @@ static double change_share(const struct bent *b, double vvv, double jerk)
 				    INTERP_ARC_JERK_ROUND));
 }
 
+/* Where the path itself bends, what it needs is square to the way along it,
+ * whatever direction an axis has. */
+static double square_mm_s2(const struct bent_node *k, double a, double v)
+{
+	const double across = (double)k->all * v * v;
+
+	return k->all > 0 && across < a ? sqrt(a * a - across * across) : 0;
+}
+
 /* Unlike on an arc, what an axis needs along the path and for its bend may
  * point one way. */
 void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
@@ -333,7 +342,8 @@ void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
 
 	left = b->bend > 0 ? most * jerk / (3 * b->bend * v) : INFINITY;
 	if (b->rate > 0)
-		left = smaller(left, (1 - across) * a / b->rate);
+		left = smaller(left, larger((1 - across) * a / b->rate,
+					    square_mm_s2(k, a, v)));
 	left = larger(left, least);
 	both = b->bend > 0 ? smaller(3 * b->bend * v * left / jerk, most) : 0;
 	ret->a_mm_s2 = left;
@@ -350,6 +360,6 @@ void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind)
 		if (w->bends >> j & 1)
 			pass_bent_node(w, &(struct bent_node) {
 				w->bent[j], j, before, behind,
-				(float)own_mm_s2(w), own_mm_s3, INFINITY,
+				(float)own_mm_s2(w), own_mm_s3, INFINITY, 0,
 			});
 }

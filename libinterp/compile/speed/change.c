@@ -417,6 +417,16 @@ static double longer(const struct pass *w)
 				LONGER_MOST) : 1;
 }
 
+/* Of all columns, as one window shows it. */
+static double bend_of(const struct pass *w, const struct changing *c)
+{
+	double sum = 0;
+
+	for (uint32_t j = 0; j < w->n; j++)
+		sum += c->bent[j].bend * c->bent[j].bend;
+	return sqrt(sum);
+}
+
 /* What windows up to @wide show of the bend, from node @i on until more is
  * asked. */
 static void note_way(struct pass *w, uint32_t i, const struct asked *asked,
@@ -425,12 +435,15 @@ static void note_way(struct pass *w, uint32_t i, const struct asked *asked,
 	const uint32_t from = PASS_CHANGE_FIRST - is_tight(w);
 	const struct changing *near = &w->changing[PASS_CHANGE_FIRST];
 	const double by = longer(w);
-	struct bent is[INTERP_NAXES] = { 0 };
+	struct way_bend to = { .all = 0 };
+	struct bent *is = to.is;
 	double sum = 0, arc_mm_s = INFINITY;
 
 	w->gate.v_mm_s *= by;
-	for (uint32_t at = from; at <= wide; at++)
+	for (uint32_t at = from; at <= wide; at++) {
 		arc_mm_s = smaller(arc_mm_s, w->changing[at].arc_mm_s);
+		to.all = larger(to.all, bend_of(w, &w->changing[at]));
+	}
 	for (uint32_t j = 0; j < w->n; j++) {
 		if (!(asked->along >> j & 1))
 			continue;
@@ -449,8 +462,9 @@ static void note_way(struct pass *w, uint32_t i, const struct asked *asked,
 		is[j].bend /= by * by;
 		is[j].change /= by * by * by;
 	}
-	pass_note_way(w, i - 1, w->gate.next - 1, is,
-		      smaller(asked->most_mm_s, w->gate.v_mm_s));
+	to.all /= by * by;
+	to.v_mm_s = smaller(asked->most_mm_s, w->gate.v_mm_s);
+	pass_note_way(w, i - 1, w->gate.next - 1, &to);
 	sum = sqrt(sum);
 	pass_way_begin(w, i, &(struct way_on) {
 		.bend = sum, .off = larger(near->bend_most - sum, 0),

@@ -102,6 +102,8 @@ struct beside {
 	int way;			/* 1: behind it, -1: before it */
 	double mm;			/* so far nodes see it */
 	float most_mm_s;		/* they are no faster */
+	double bend[INTERP_NAXES];	/* of each column there, in a mm */
+	double all;			/* of all of them */
 };
 
 /* If it is faster now.  What bends there was seen over the corner. */
@@ -160,6 +162,73 @@ static void raise_side(const struct pass *w, struct pass *again,
 	}
 }
 
+/* What the path bends by itself on this side of the corner: no node there is
+ * faster than an arc of that, and no more of it counts than is certain. */
+static void look_at_side(const struct pass *w, struct beside *k)
+{
+	const double half = pass_sees_mm(w) / 2;
+	const uint32_t middle = pass_away(w, k->at, k->way, half);
+	const uint32_t end = pass_away(w, middle, k->way, half);
+	double most = 0, sure = 0, per_mm;
+	struct weakest weakest;
+	struct headings h;
+	struct chord a, b;
+	uint32_t moves = 0;
+
+	heading_of(&w->ways, k->way > 0 ? k->at : k->at - 1, &h);
+	pass_chord(w, k->way > 0 ? k->at : end, middle, h.first.along, &a);
+	pass_chord(w, middle, k->way > 0 ? end : k->at, h.first.along, &b);
+	per_mm = a.mm > 0 && b.mm > 0 ? 2 / (a.mm + b.mm) : INFINITY;
+	for (uint32_t j = 0; j < w->n; j++) {
+		const double turn = fabs(b.h.rate[j] - a.h.rate[j]);
+		const double off = w->tol[j] * (a.per_mm + b.per_mm);
+
+		k->bend[j] = INFINITY;
+		if (isinf(per_mm) || !(h.first.along >> j & 1))
+			continue;
+		k->bend[j] = larger(turn - off, 0) * per_mm;
+		sure += k->bend[j] * k->bend[j];
+		most += turn * per_mm * turn * per_mm;
+		moves |= (uint32_t)(a.h.rate[j] != 0 || turn > 0) << j;
+	}
+	k->all = moves ? sqrt(sure) : INFINITY;
+	weakest = pass_weakest(w, moves);
+	if (moves)
+		k->most_mm_s = pass_least(k->most_mm_s, (float)pass_arc_mm_s(
+						&weakest, sqrt(most)));
+}
+
+/* Of way @b beside a corner or over it. */
+static float of_side(const struct bent_way *b, uint32_t corner, double before,
+		     double behind)
+{
+	if (b->before >= corner)
+		return (float)behind;
+	return (float)(b->behind < corner ? before : larger(before, behind));
+}
+
+/* What was seen of the path's own bend so near to the corner @k was that over
+ * the corner. */
+static void lessen_ways(struct pass *w, const struct beside k[2])
+{
+	const uint32_t at = k->at, from = pass_away(w, at, -1, k->mm);
+	const uint32_t to = pass_away(w, at, 1, k->mm);
+	const struct bent_ways *ways = &w->bent_ways;
+	const float mm = (float)w->windows[0].mm;
+
+	for (size_t n = ways->n; n > 0 && ways->at[n - 1].before >= from; n--) {
+		struct bent_way *b = &ways->at[n - 1];
+		const float is = of_side(b, at, k[0].bend[b->column],
+					 k[1].bend[b->column]);
+
+		if (b->before >= to)
+			continue;
+		b->bend = pass_least(b->bend, is);
+		b->change = pass_least(b->change, is / mm);
+		b->all = pass_least(b->all, of_side(b, at, k[0].all, k[1].all));
+	}
+}
+
 /*
  * The windows of nodes beside a corner show the corner, too.  But only the
  * corner itself has to be passed slowly: a move that meets a slow place in
@@ -173,6 +242,7 @@ void pass_beside_corner(struct pass *w, uint32_t known)
 {
 	const double far = pass_sees_mm(w), mm = w->windows[0].mm;
 	uint32_t at = w->slow;
+	struct beside sides[2];
 	struct pass again;
 	struct lone lone;
 	bool sharp, alone;
@@ -190,11 +260,15 @@ void pass_beside_corner(struct pass *w, uint32_t known)
 	pass_change_anew(w, pass_away(w, at, 1, far));
 	again = *w;
 	pass_change_anew(&again, UINT32_MAX);
-	for (int n = 0; n < 2; n++)
-		raise_side(w, &again, &(struct beside) {
+	for (int n = 0; n < 2; n++) {
+		sides[n] = (struct beside) {
 			at, 2 * n - 1, sharp ? far : mm,
-			sharp ? INFINITY : lone.beyond_mm_s[n],
-		});
+			sharp ? INFINITY : lone.beyond_mm_s[n], { 0 }, 0,
+		};
+		look_at_side(w, &sides[n]);
+		raise_side(w, &again, &sides[n]);
+	}
 	w->bent_nodes = again.bent_nodes;
 	w->bent_ways = again.bent_ways;
+	lessen_ways(w, sides);
 }

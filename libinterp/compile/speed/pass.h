@@ -113,6 +113,8 @@ struct bent_node {
 	float own_mm_s2, own_mm_s3;	/* as if nothing bent */
 	float peak_mm_s;		/* no faster, or it is a peak of the
 					 * speed */
+	float all;			/* the bend of all columns, if the path
+					 * itself bends; square to it */
 };
 
 struct bent_nodes {
@@ -132,6 +134,7 @@ struct bent_way {
 	uint32_t before, behind;
 	uint32_t column;
 	float bend, change, rate;	/* as struct bent */
+	float all;			/* the bend of all columns */
 };
 
 struct bent_ways {
@@ -422,14 +425,19 @@ void pass_forget_bends(struct pass *w, uint32_t behind);
 /** pass_bent_node() - the same by one of them. */
 void pass_bent_node(struct pass *w, const struct bent_node *b);
 
+/* How the path itself bends. */
+struct way_bend {
+	struct bent is[INTERP_NAXES];	/* each column; bend 0: it does not */
+	double all;			/* of all columns, in a mm */
+	double v_mm_s;			/* it is no faster */
+};
+
 /**
- * pass_note_way() - between the segments @before and @behind the path bends so,
- * and is no faster than @v_mm_s: soften them when pass_soften() is called.
- *
- * @is: of each column; bend 0: it does not bend
+ * pass_note_way() - between the segments @before and @behind the path bends so:
+ * soften them when pass_soften() is called.
  */
 void pass_note_way(struct pass *w, uint32_t before, uint32_t behind,
-		   const struct bent *is, double v_mm_s);
+		   const struct way_bend *b);
 
 /** pass_way_begin() - from node @i on the path bends as is noted; @k says by
  *  how much, of which a rounding may hide @k->off, and the speeds. */
@@ -480,6 +488,7 @@ static inline struct bent_node pass_way_node(const struct bent_way *k)
 		.is = { .bend = (double)k->bend, .change = (double)k->change,
 			.rate = (double)k->rate },
 		.column = k->column, .before = k->before, .behind = k->behind,
+		.all = k->all,
 	};
 }
 
