@@ -222,7 +222,9 @@ static void bursts_off(struct interp_cursor *c, struct row_at at)
 
 		for (uint32_t i = 1; i < c->npairs; i++)
 			last = key[i] > last ? key[i] : last;
-		m -= row_give(&at, c->pulse_back[c->root], m - key_place(last));
+		n = key_place(last);
+		m -= row_give(&at, c->pulse_back[c->root],
+			      n < 0 ? at.left : m - n);
 		if (at.left == 0)
 			break;
 		p = &c->pair[last % INTERP_NAXES];

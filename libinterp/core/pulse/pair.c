@@ -441,7 +441,8 @@ uint32_t pair_rows_back(struct interp_pair *p, uint32_t n,
 	row[1] = (uint8_t)least(left, p->s - p->from);
 	left -= row[1];
 	p->s -= row[1];
-	for (; m - p->done + p->from - p->prior_from <= left; k += 2) {
+	for (; p->prior >= 0 && m - p->done + p->from - p->prior_from <= left;
+	     k += 2) {
 		row[k] = (uint8_t)(m - p->done);
 		row[k + 1] = (uint8_t)(p->from - p->prior_from);
 		left -= m - p->done + p->from - p->prior_from;
