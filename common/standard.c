@@ -4,7 +4,10 @@
 
 #include "written.h"
 
+#include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,13 +15,33 @@
 #include <unistd.h>
 
 static const char *name;
+static volatile sig_atomic_t interrupted;
+
+void standard_interrupt(void)
+{
+	interrupted = 1;
+}
+
+/* The signal broke off a write, most likely into a pipe that nobody reads.  To
+ * find out by another write could block again. */
+static void interruption_check(bool failed)
+{
+	if (!interrupted || !failed)
+		return;
+	fprintf(stderr, "%s: interrupted; standard output is not complete\n",
+		name);
+	_exit(EX_TEMPFAIL);
+}
 
 static void output_check(void)
 {
-	const int err = written_close(stdout);
+	int err;
 
+	interruption_check(ferror(stdout));
+	err = written_close(stdout);
 	if (err == 0)
 		return;
+	interruption_check(err == -EINTR);
 	fprintf(stderr, "%s: standard output: %s; it is not complete\n", name,
 		strerror(-err));
 	_exit(EX_IOERR);

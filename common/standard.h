@@ -2,7 +2,7 @@
 /*
  * standard.h - standard input, output and error, from the start to the exit
  *
- * Threads: one, at the start of the program.
+ * Threads: one, at the start of the program, but for standard_interrupt().
  */
 #ifndef COMMON_STANDARD_H
 #define COMMON_STANDARD_H
@@ -14,5 +14,12 @@
  * EX_IOERR.
  */
 void standard_guard(const char *program);
+
+/**
+ * standard_interrupt() - a signal has come that ends the program.  If standard
+ * output is not complete then, that is the reason, and the exit is EX_TEMPFAIL.
+ * Any thread, also a handler of signals.
+ */
+void standard_interrupt(void);
 
 #endif /* COMMON_STANDARD_H */

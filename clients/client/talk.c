@@ -16,6 +16,7 @@
 #include "clocks.h"
 #include "packet.h"
 #include "seal.h"
+#include "standard.h"
 #include "udpm.h"
 
 #include <errno.h>
@@ -94,6 +95,7 @@ static void on_signal(int number)
 {
 	(void)number;
 	interrupted = 1;
+	standard_interrupt();
 }
 
 void talk_catch_signals(void)

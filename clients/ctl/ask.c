@@ -559,11 +559,50 @@ static int add_page(void *arg, json_t *page)
 	return json_array_extend(arg, page) ? EX_SOFTWARE : 0;
 }
 
+/*
+ * A list of thousands of jobs is read and printed, and then the program ends.
+ * To give its pieces back one by one costs a fifth of its time.  So they come
+ * from rooms that stay until the end; each begins with the address of the one
+ * before, which is still known by that.
+ */
+#define LIST_ROOM	(1 << 20)
+#define LIST_ALIGN	16
+
+static void *list_take(size_t bytes)
+{
+	static char *room;
+	static size_t at, size;
+	const size_t n = (bytes + LIST_ALIGN - 1) / LIST_ALIGN * LIST_ALIGN;
+
+	if (n > size - at) {
+		const size_t more = n > LIST_ROOM ? n : LIST_ROOM;
+		char *next = malloc(LIST_ALIGN + more);
+
+		if (!next)
+			return NULL;
+		memcpy(next, &room, sizeof(room));
+		room = next;
+		at = LIST_ALIGN;
+		size = LIST_ALIGN + more;
+	}
+	at += n;
+	return room + at - n;
+}
+
+static void list_leave(void *taken)
+{
+	(void)taken;
+}
+
 static int list(struct ctl *c, const char *verb, const char *head,
 		void (*print)(json_t *job))
 {
-	json_t *all = json_array();
-	int err = ctl_pages(c, verb, add_page, all);
+	json_t *all;
+	int err;
+
+	json_set_alloc_funcs(list_take, list_leave);
+	all = json_array();
+	err = ctl_pages(c, verb, add_page, all);
 
 	if (err == 0 && c->json)
 		err = ctl_put_json(all);

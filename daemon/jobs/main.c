@@ -15,6 +15,7 @@
 #include "values.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <signal.h>
 #include <sodium.h>
 #include <stdarg.h>
@@ -109,13 +110,15 @@ void jobs_note(struct jobs *j, const struct jobs_note *n,
 		.outcome = n->outcome ? n->outcome : "", .text = words,
 		.place_mm = n->place_mm, .now_us = jobs_utime(),
 	});
-	if (commit_note(j) != 0)
+	if (commit_note(j) != 0 && err == 0)
 		err = STORE_KEPT;
 	/* What is reported is true.  If the disk does not have it, that is
 	 * reported too. */
 	if (err != 0)
 		snprintf(words + strlen(words), sizeof(words) - strlen(words),
-			 " (kept in memory, not on the disk: %s)",
+			 " (%s: %s)", err == STORE_MISSED ?
+			 "not kept, too much is in memory" :
+			 "kept in memory, not on the disk",
 			 store_why(j->store));
 	publish(j, n, words);
 }
@@ -173,6 +176,23 @@ static void tell_mended(struct jobs *j)
 	}, "%s", store_mended(j->store));
 }
 
+static void tell_store(struct jobs *j, const char *why)
+{
+	const struct jobs_note note = {
+		.kind = "store", .outcome = *why ? "degraded" : "ok",
+	};
+	const uint64_t missed = store_missed(j->store);
+
+	if (*why)
+		jobs_note(j, &note, "store degraded: %s", why);
+	else if (missed > 0)
+		jobs_note(j, &note, "store is whole again; %" PRIu64 " events, "
+			  "alarms and changes were too many and are not in it",
+			  missed);
+	else
+		jobs_note(j, &note, "store is whole again");
+}
+
 /* Report when the store becomes degraded, and when it is whole again. */
 static void watch_store(struct jobs *j, int64_t now_us)
 {
@@ -182,9 +202,7 @@ static void watch_store(struct jobs *j, int64_t now_us)
 	if (strcmp(why, j->store_told) == 0)
 		return;
 	j->store_told = why;
-	jobs_note(j, &(struct jobs_note) {
-		.kind = "store", .outcome = *why ? "degraded" : "ok",
-	}, "store %s%s", *why ? "degraded: " : "is whole again", why);
+	tell_store(j, why);
 	if (whole && *store_mended(j->store))
 		tell_mended(j);
 	/* Until now nothing was known of what is in the store. */

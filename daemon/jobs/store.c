@@ -373,14 +373,14 @@ char *store_resume_at(struct store *s, uint32_t n)
  * that they are the same.  NAN becomes NULL. */
 int store_change(struct store *s, uint32_t n, const struct store_change *c)
 {
-	return store_do(s, STORE_MAY_GO, "INSERT OR IGNORE INTO change "
+	return store_do(s, STORE_MAY_MISS, "INSERT OR IGNORE INTO change "
 			"VALUES(?, ?, ?, ?, ?, ?)", "iisddd", (int64_t)n,
 			c->time_ns, c->field, c->was, c->now, c->place_mm);
 }
 
 int store_note(struct store *s, const struct store_note *e)
 {
-	return write_note(s, STORE_MAY_GO, e);
+	return write_note(s, STORE_MAY_MISS, e);
 }
 
 /* -- Numbers -------------------------------------------------------------- */

@@ -17,7 +17,8 @@
  *
  * Units: in every name; times are microseconds since 1970.
  * Threads: one.  Calls return 0, STORE_KEPT or -errno unless they say more, and
- * log what SQLite said.
+ * log what SQLite said.  What is only told of a job, or of the machine, may be
+ * STORE_MISSED, too.
  */
 #ifndef JOBS_STORE_H
 #define JOBS_STORE_H
@@ -27,6 +28,7 @@
 #include <stdint.h>
 
 #define STORE_KEPT	1		/* in memory, not on the disk */
+#define STORE_MISSED	2		/* nowhere: too much is in memory */
 #define STORE_BUSY_MS	500
 
 enum job_state {
@@ -115,6 +117,10 @@ void store_close(struct store *s);
 
 /** store_why() - why the store is degraded; "": it is not. */
 const char *store_why(const struct store *s);
+
+/** store_missed() - how many calls were STORE_MISSED since the store became
+ *  degraded last. */
+uint64_t store_missed(const struct store *s);
 
 /** store_mended() - what was done to a damaged file; "": nothing. */
 const char *store_mended(const struct store *s);

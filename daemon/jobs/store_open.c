@@ -126,6 +126,11 @@ void store_close(struct store *s)
 	free(s);
 }
 
+uint64_t store_missed(const struct store *s)
+{
+	return s->missed;
+}
+
 const char *store_mended(const struct store *s)
 {
 	return s->told;

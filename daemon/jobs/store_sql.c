@@ -73,6 +73,8 @@ void store_degrade(struct store *s, int err)
 	if (s->in_memory)
 		return;
 	s->in_memory = true;
+	s->may_miss = 0;
+	s->missed = 0;
 	s->err = err == -EIO ? store_file_probe(s) : err;
 	s->together = false;
 	go_over(s, s->err == -ENOSPC);
@@ -207,6 +209,17 @@ bool store_tick(struct store *s, int64_t now_us)
 
 /* -- What the others call ------------------------------------------------- */
 
+static bool too_many(struct store *s, enum store_keep k)
+{
+	if (!s->in_memory || k != STORE_MAY_MISS ||
+	    s->may_miss++ < STORE_MISS_FROM)
+		return false;
+	s->may_miss = STORE_MISS_FROM;
+	s->missed++;
+	s->dropped++;
+	return true;
+}
+
 int store_do(struct store *s, enum store_keep k, const char *sql,
 	     const char *kinds, ...)
 {
@@ -216,6 +229,8 @@ int store_do(struct store *s, enum store_keep k, const char *sql,
 
 	if (s->in_memory && k == STORE_MUST)
 		return s->err;
+	if (too_many(s, k))
+		return STORE_MISSED;
 	va_start(ap, kinds);
 	w = store_write_new(sql, k, kinds, ap);
 	va_end(ap);

@@ -32,9 +32,16 @@
 enum store_keep {
 	STORE_MUST,			/* on the disk, or refused */
 	STORE_KEEP,			/* else in memory, until it can be */
-	STORE_MAY_GO			/* the same; dropped if there are
+	STORE_MAY_GO,			/* the same; dropped if there are
 					 * many */
+	STORE_MAY_MISS			/* the same; not written at all if
+					 * there are STORE_MISS_FROM */
 };
+
+/* What is written in memory takes room there until there is some on the disk:
+ * up to 1 kB for an event. */
+#define STORE_MISS_FROM	32768
+
 
 struct store_value {
 	char kind;			/* i, d, s as in store_do() */
@@ -79,7 +86,9 @@ struct store {
 	sqlite3 *disk;			/* where what was kept is brought to;
 					 * NULL: it is not yet */
 	struct store_writes brought;	/* into its transaction */
-	uint64_t dropped;
+	uint32_t may_miss;		/* of them, written in memory */
+	uint64_t missed;		/* not written, this time */
+	uint64_t dropped;		/* and they, and what left the list */
 	uint64_t spared;		/* from the list, but not from the
 					 * transaction */
 	int64_t retained_us;

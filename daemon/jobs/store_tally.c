@@ -40,7 +40,7 @@ char *store_trail(struct store *s, uint32_t n)
 
 int store_fault(struct store *s, uint32_t n, const struct store_fault *f)
 {
-	return store_do(s, STORE_MAY_GO, "INSERT OR IGNORE INTO fault VALUES"
+	return store_do(s, STORE_MAY_MISS, "INSERT OR IGNORE INTO fault VALUES"
 			"(?, ?, ?, ?, ?)", "iisid", (int64_t)n, f->time_ns,
 			f->fault, (int64_t)f->line, f->place_mm);
 }
@@ -49,7 +49,7 @@ int store_fault(struct store *s, uint32_t n, const struct store_fault *f)
  * the same. */
 int store_calls(struct store *s, uint32_t n, const char *json)
 {
-	return store_do(s, STORE_MAY_GO, "INSERT OR IGNORE INTO change "
+	return store_do(s, STORE_MAY_MISS, "INSERT OR IGNORE INTO change "
 			"SELECT ?1, value->>0, 'condition', "
 			"coalesce(lag(value->>1) OVER (ORDER BY key), "
 			"(SELECT now FROM change WHERE n=?1 AND "

@@ -113,7 +113,7 @@ static void keep_room(struct store *s)
 {
 	struct store_write **at = &s->kept.first;
 
-	while (*at && (*at)->keep != STORE_MAY_GO)
+	while (*at && (*at)->keep < STORE_MAY_GO)
 		at = &(*at)->next;
 	if (!*at)
 		return;

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """edmctl: what it prints and what it exits with."""
 
+import fcntl
 import json
 import os
 import pty
@@ -202,6 +203,27 @@ def test_watch_ends_by_ctrl_c_with_0(machine):
     lines = out.splitlines()
     assert lines and len(set(lines)) == len(lines), "told once"
     assert "goes on" in err
+
+
+@pytest.mark.parametrize("verb", ["status", "watch"])
+def test_ctrl_c_while_a_full_pipe_blocks_is_an_interruption(machine, verb):
+    """status is blocked as it ends, watch while it goes on."""
+    read, write_end = os.pipe()
+    room = fcntl.fcntl(write_end, fcntl.F_SETPIPE_SZ, 4096)
+    assert os.write(write_end, b"x" * room) == room
+    p = subprocess.Popen(
+        [str(BUILD / "edmctl"), "--machine", machine.name, verb],
+        stdout=write_end, stderr=subprocess.PIPE, text=True,
+    )
+    until(lambda: open(f"/proc/{p.pid}/syscall").read().startswith("1 0x1 "))
+    p.send_signal(signal.SIGINT)
+    _, err = p.communicate(timeout=60)
+    os.close(write_end)
+    with os.fdopen(read, "rb") as f:
+        assert f.read() == b"x" * room, "nothing was added to find out why"
+    assert p.returncode == 75
+    assert err.endswith("edmctl: interrupted; standard output is not "
+                        "complete\n")
 
 
 def test_status_of_a_killed_edmd_exits_69(machine):

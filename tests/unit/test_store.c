@@ -482,6 +482,61 @@ static void a_full_disk_drops_nothing(void **state)
 	assert_int_equal(keep_many(SQLITE_FULL), 0);
 }
 
+/* Otherwise every event would take memory until there is none. */
+static void what_is_told_in_memory_is_bounded(int rc)
+{
+	const int more = 500;
+	struct store *s = open_store();
+	struct store_size size;
+	uint32_t n;
+
+	assert_int_equal(add(s, "job", &n), 0);
+	disk_fails(rc);
+	assert_int_equal(store_set_number(s, "waiting", 1), STORE_KEPT);
+	alarms(s, 0, STORE_MISS_FROM);
+	assert_int_equal(store_missed(s), 0);
+	alarms(s, STORE_MISS_FROM, more - 1);
+	assert_int_equal(store_note(s, &(struct store_note) {
+		.kind = "alarm", .job = "", .outcome = "", .text = "",
+	}), STORE_MISSED);
+	assert_int_equal(store_missed(s), more);
+	assert_int_equal(store_number_of(s, 0, "SELECT count(*) FROM event "
+					 "WHERE kind='alarm'", ""),
+			 STORE_MISS_FROM);
+	/* A job is written nevertheless. */
+	assert_int_equal(end(s, n, JOB_DONE), STORE_KEPT);
+	assert_int_equal(state_in(s, "job"), JOB_DONE);
+	disk.fail_from = -1;
+	while (!store_tick(s, 1))
+		assert_ptr_not_equal(s->disk, NULL);
+	store_measure(s, &size);
+	assert_int_equal(store_missed(s), more);
+	assert_int_equal(alarms_on_disk(),
+			 STORE_MISS_FROM + more - (int)size.dropped);
+	assert_int_equal(state_in(s, "job"), JOB_DONE);
+	alarms(s, STORE_MISS_FROM + more, 1);
+	assert_int_equal(alarms_on_disk(),
+			 STORE_MISS_FROM + more + 1 - (int)size.dropped);
+	/* The next time it is counted anew. */
+	disk_fails(rc);
+	alarms(s, STORE_MISS_FROM + more + 1, 1);
+	assert_int_equal(store_missed(s), 0);
+	disk.fail_from = -1;
+	store_close(s);
+}
+
+static void many_events_of_a_full_disk_are_counted_and_left_out(void **state)
+{
+	(void)state;
+	what_is_told_in_memory_is_bounded(SQLITE_FULL);
+}
+
+static void many_events_of_a_copy_are_counted_and_left_out(void **state)
+{
+	(void)state;
+	what_is_told_in_memory_is_bounded(SQLITE_IOERR_WRITE);
+}
+
 static void what_is_written_over_a_full_disk_is_seen_by_us_alone(void **state)
 {
 	struct store *s = open_store();
@@ -1301,6 +1356,8 @@ int main(void)
 		T(a_cut_that_never_ends_writes_little),
 		T(the_list_in_memory_is_bounded_and_keeps_what_counts),
 		T(a_full_disk_drops_nothing),
+		T(many_events_of_a_full_disk_are_counted_and_left_out),
+		T(many_events_of_a_copy_are_counted_and_left_out),
 		T(what_is_written_over_a_full_disk_is_seen_by_us_alone),
 		T(a_disk_that_is_full_again_loses_nothing),
 		T(a_full_disk_that_cannot_be_read_in_the_end_loses_nothing),

@@ -172,6 +172,11 @@ static void quadrant_keep(struct interp_cursor *c, const struct quadrant *q)
 	k->y = y;
 }
 
+static int64_t least(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
+}
+
 static int64_t swept(int64_t coordinate)
 {
 	return (coordinate > 0 ? coordinate : 0) + 1;
@@ -233,68 +238,114 @@ static uint32_t quadrant_back(struct interp_cursor *c, uint32_t most,
 	return n;
 }
 
-/* -- Within a stored run --------------------------------------------------- */
+/* -- Along stored runs ----------------------------------------------------- */
 
-/* What a pulse of the run adds to the measure: only the other coordinate
- * counts, and it stays. */
-static int64_t run_swept(const struct interp_circle *k, const int8_t p[2])
+/* A run: its axis, its pulse along that, and what each adds to the measure.
+ * Only the other coordinate counts, and it stays. */
+struct run {
+	int axis;
+	int64_t step, sweeps;
+};
+
+static struct run run_of(const struct interp_circle *k)
 {
-	return swept(k->ccw * (k->x * p[1] - k->y * p[0]));
+	const int axis = (int)((k->run + k->run_first) & 1);
+	const int64_t step = k->runs[k->run] > 0 ? 1 : -1;
+
+	return (struct run) {
+		axis, step, swept(k->ccw * step * (axis ? k->x : -k->y)),
+	};
 }
 
-/* @n pulses along @p, or against it. */
-static void run_keep(struct interp_cursor *c, const int8_t p[2], int64_t n)
+static int64_t run_length(const struct interp_circle *k)
+{
+	return llabs((int64_t)k->runs[k->run]);
+}
+
+static uint16_t run_pulse(const struct interp_cursor *c, const struct run *r,
+			  bool back)
+{
+	return (uint16_t)pulse_move(r->axis ? c->arc.axis_b : c->arc.axis_a,
+				    (r->step < 0) != back);
+}
+
+/* @n pulses along the run, or back if @n < 0. */
+static void run_keep(struct interp_cursor *c, const struct run *r, int64_t n)
 {
 	struct interp_circle *k = &c->circle;
+	int64_t *at = r->axis ? &k->y : &k->x;
+	const int64_t by = n * r->step;
 
-	k->dev += 2 * (k->x * p[0] + k->y * p[1]) * n + n * n;
-	k->x += n * p[0];
-	k->y += n * p[1];
+	k->dev += (2 * *at + by) * by;
+	*at += by;
 	k->sent += n;
 	k->tick += (uint32_t)n;
-	c->pos[c->arc.axis_a] += (int32_t)n * p[0];
-	c->pos[c->arc.axis_b] += (int32_t)n * p[1];
+	c->measure += n * r->sweeps;
+	c->pos[r->axis ? c->arc.axis_b : c->arc.axis_a] += (int32_t)by;
+}
+
+/* In a damaged block the runs may end too early. */
+static bool run_next(struct interp_circle *k)
+{
+	if (k->run + 1 >= k->nruns || k->runs[k->run + 1] == 0)
+		return false;
+	k->run++;
+	k->sent = 0;
+	return true;
 }
 
 static uint32_t run_forward(struct interp_cursor *c, uint32_t most,
 			    uint16_t *ret)
 {
 	struct interp_circle *k = &c->circle;
-	const int64_t left = llabs((int64_t)k->runs[k->run]) - k->sent;
 	uint32_t n = 0;
-	int64_t sweeps;
-	uint16_t pulse;
-	int8_t p[2];
 
-	circle_run_pulse(k, p);
-	pulse = (uint16_t)pulse_plane_move(c, p[0], p[1]);
-	sweeps = run_swept(k, p);
-	for (; n < most && n < left && c->measure < c->want; n++) {
-		ret[n] = pulse;
-		c->measure += sweeps;
+	while (n < most && c->measure < c->want) {
+		int64_t some;
+		struct run r;
+
+		if (k->sent == run_length(k) && !run_next(k))
+			break;
+		r = run_of(k);
+		some = least(run_length(k) - k->sent, most - n);
+		if (c->measure + (some - 1) * r.sweeps >= c->want)
+			some = (c->want - c->measure - 1) / r.sweeps + 1;
+		pulse_row(ret + n, most - n, run_pulse(c, &r, false),
+			  (uint32_t)some);
+		run_keep(c, &r, some);
+		n += (uint32_t)some;
 	}
-	run_keep(c, p, n);
 	return n;
 }
 
-/* The first pulse of a run stays: behind it is another one. */
+/* A run that is taken back ends where the one before does. */
+static void run_prior(struct interp_circle *k)
+{
+	if (k->sent == 0 && k->run > 0) {
+		k->run--;
+		k->sent = run_length(k);
+	}
+}
+
 static uint32_t run_back(struct interp_cursor *c, uint32_t most, uint16_t *ret)
 {
 	struct interp_circle *k = &c->circle;
 	uint32_t n = 0;
-	int64_t sweeps;
-	uint16_t pulse;
-	int8_t p[2];
 
-	circle_run_pulse(k, p);
-	pulse = pulse_turned((uint16_t)pulse_plane_move(c, p[0], p[1]));
-	sweeps = run_swept(k, p);
-	for (; n < most && n + 1 < k->sent &&
-	       c->measure - sweeps >= c->want; n++) {
-		ret[n] = pulse;
-		c->measure -= sweeps;
+	while (n < most) {
+		const struct run r = run_of(k);
+		int64_t some = least(k->sent, most - n);
+
+		if (c->measure - some * r.sweeps < c->want)
+			some = (c->measure - c->want) / r.sweeps;
+		if (some <= 0)
+			break;
+		pulse_row(ret + n, most - n, run_pulse(c, &r, true),
+			  (uint32_t)some);
+		run_keep(c, &r, -some);
+		run_prior(k);
+		n += (uint32_t)some;
 	}
-	run_keep(c, p, -(int64_t)n);
 	return n;
 }
 

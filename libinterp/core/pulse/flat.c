@@ -107,11 +107,146 @@ INLINE void flat_off(struct interp_cursor *c, uint32_t ticks, uint16_t *ret,
 	c->measure -= ticks;
 }
 
+/* -- By bursts ------------------------------------------------------------- */
+
+/*
+ * The main axis goes on to where the next burst is, and that burst is a row.
+ * Which axis has it is hard to predict.  So it is looked for without a branch,
+ * as the least of the keys of the pairs: the place of a burst, and then the
+ * order of the axes.
+ */
+#define NEVER	(INT64_C(1) << 40)	/* a place behind every line */
+
+INLINE int64_t fewer(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
+}
+
+/* The place -1 is before the first burst of an axis. */
+INLINE uint64_t key_of(int64_t place, uint32_t i)
+{
+	return (uint64_t)(fewer(place, NEVER) + 1) * INTERP_NAXES + i;
+}
+
+INLINE int64_t key_place(uint64_t key)
+{
+	return (int64_t)(key / INTERP_NAXES) - 1;
+}
+
+/* Of the burst that pair @i gives next, or gave last. */
+INLINE uint64_t key_on(const struct interp_cursor *c, uint32_t i)
+{
+	return key_of(c->pair[i].due, i);
+}
+
+INLINE uint64_t key_off(const struct interp_cursor *c, uint32_t i)
+{
+	const struct interp_pair *p = &c->pair[i];
+
+	return key_of(p->s > p->from ? p->due : p->done, i);
+}
+
+/* Where the next row goes, and how many points are wanted. */
+struct row_at {
+	uint16_t *ret;
+	uint32_t left;
+};
+
+/* Return: @n, or what was left. */
+INLINE uint32_t row_give(struct row_at *at, uint16_t pulse, int64_t n)
+{
+	const uint32_t some = (uint32_t)fewer(n, at->left);
+
+	pulse_row(at->ret, at->left, pulse, some);
+	at->ret += some;
+	at->left -= some;
+	return some;
+}
+
+/* The main axis has come to @m, in @ticks. */
+static void bursts_stand(struct interp_cursor *c, int64_t m, int64_t ticks)
+{
+	c->tick += (uint32_t)ticks;
+	c->measure += ticks;
+	c->pos[c->root] += (int32_t)(m - c->pair[0].m) * c->sign[c->root];
+	for (uint32_t i = 0; i < c->npairs; i++) {
+		struct interp_pair *p = &c->pair[i];
+
+		p->m = m;
+		p->dev = p->b * m - p->a * p->s;
+	}
+}
+
+static void bursts_on(struct interp_cursor *c, struct row_at at)
+{
+	const int64_t ticks = at.left;
+	uint64_t key[INTERP_NAXES];
+	int64_t m = c->pair[0].m;
+
+	for (uint32_t i = 0; i < c->npairs; i++)
+		key[i] = key_on(c, i);
+	while (at.left > 0) {
+		uint64_t next = key[0];
+		struct interp_pair *p;
+		int64_t n;
+
+		for (uint32_t i = 1; i < c->npairs; i++)
+			next = key[i] < next ? key[i] : next;
+		m += row_give(&at, c->pulse[c->root], key_place(next) - m);
+		p = &c->pair[next % INTERP_NAXES];
+		n = row_give(&at, c->pulse[p->in_b], p->to - p->s);
+		c->pos[p->in_b] += (int32_t)n * c->sign[p->in_b];
+		p->s += n;
+		if (n > 0 && p->s == p->to) {
+			pair_burst_next(p);
+			key[next % INTERP_NAXES] =
+				key_on(c, next % INTERP_NAXES);
+		}
+	}
+	bursts_stand(c, m, ticks);
+}
+
+/* The same in the other order. */
+static void bursts_off(struct interp_cursor *c, struct row_at at)
+{
+	const int64_t ticks = at.left;
+	uint64_t key[INTERP_NAXES];
+	int64_t m = c->pair[0].m;
+
+	for (uint32_t i = 0; i < c->npairs; i++)
+		key[i] = key_off(c, i);
+	while (at.left > 0) {
+		uint64_t last = key[0];
+		struct interp_pair *p;
+		int64_t n;
+
+		for (uint32_t i = 1; i < c->npairs; i++)
+			last = key[i] > last ? key[i] : last;
+		n = key_place(last);
+		m -= row_give(&at, c->pulse_back[c->root],
+			      n < 0 ? at.left : m - n);
+		if (at.left == 0)
+			break;
+		p = &c->pair[last % INTERP_NAXES];
+		if (p->s == p->from)
+			pair_burst_back(p);
+		n = row_give(&at, c->pulse_back[p->in_b], p->s - p->from);
+		c->pos[p->in_b] -= (int32_t)n * c->sign[p->in_b];
+		p->s -= n;
+		key[last % INTERP_NAXES] = key_off(c, last % INTERP_NAXES);
+	}
+	bursts_stand(c, m, -ticks);
+}
+
+/* -- The walk -------------------------------------------------------------- */
+
 static uint32_t flat_forward(struct interp_cursor *c, uint32_t ticks,
 			     uint16_t *ret)
 {
 	if (c->by_limit)
 		flat_on(c, ticks, ret, true);
+	else if (c->pair[0].bursts)
+		bursts_on(c, (struct row_at) { ret, ticks });
 	else
 		flat_on(c, ticks, ret, false);
 	return ticks;
@@ -122,6 +257,8 @@ static uint32_t flat_back(struct interp_cursor *c, uint32_t ticks,
 {
 	if (c->by_limit)
 		flat_off(c, ticks, ret, true);
+	else if (c->pair[0].bursts)
+		bursts_off(c, (struct row_at) { ret, ticks });
 	else
 		flat_off(c, ticks, ret, false);
 	return ticks;

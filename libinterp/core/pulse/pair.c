@@ -94,7 +94,7 @@ int64_t pair_stop(int64_t a, int64_t b, int64_t n, int64_t j)
 
 /* X(j), from Y(j) and Y(j + 1); there is none before the first burst and after
  * the last. */
-static int64_t own_stop(const struct interp_pair *p, int64_t j, int64_t from,
+INLINE int64_t own_stop(const struct interp_pair *p, int64_t j, int64_t from,
 			int64_t to)
 {
 	if (j < 0)
@@ -105,7 +105,7 @@ static int64_t own_stop(const struct interp_pair *p, int64_t j, int64_t from,
 }
 
 /* Y(j). */
-static int64_t own_from(const struct interp_pair *p, int64_t j)
+INLINE int64_t own_from(const struct interp_pair *p, int64_t j)
 {
 	if (j <= 0)
 		return 0;
@@ -151,16 +151,12 @@ static void burst_look(struct interp_pair *p)
 	p->to = led_from(p, j + 1, p->due, p->behind);
 }
 
-static void burst_on(struct interp_pair *p)
+/* The same of the next burst, at the stops of another pair. */
+static void led_on(struct interp_pair *p)
 {
 	const int64_t j = ++p->burst;
 
 	p->from = p->to;
-	if (!p->stops) {
-		p->to = own_from(p, j + 1);
-		p->due = own_stop(p, j, p->from, p->to);
-		return;
-	}
 	p->before = p->due;
 	p->due = p->behind;
 	p->behind = led_stop(p, j + 1);
@@ -174,50 +170,86 @@ static bool burst_is_empty(const struct interp_pair *p)
 }
 
 /* Find the last burst before this one that is not empty, or -1. */
-static void burst_find_prior(struct interp_pair *p)
+static void led_find_prior(struct interp_pair *p)
 {
 	const int64_t to = p->from;
 	int64_t j = p->burst, from, at = p->before;
 
 	do {
 		j--;
-		if (p->stops) {
-			p->done = at;
-			at = led_stop(p, j - 1);
-			from = led_from(p, j, at, p->done);
-		} else {
-			from = own_from(p, j);
-		}
+		p->done = at;
+		at = led_stop(p, j - 1);
+		from = led_from(p, j, at, p->done);
 	} while (j >= 0 && from == to);
-	if (!p->stops)
-		p->done = own_stop(p, j, from, to);
 	p->prior = j;
 	p->prior_from = from;
 	p->prior_before = at;
 }
 
+/* At stops of its own, no burst is empty. */
+INLINE void own_find_prior(struct interp_pair *p)
+{
+	p->prior = p->burst - 1;
+	p->prior_from = own_from(p, p->prior);
+	p->done = own_stop(p, p->prior, p->prior_from, p->from);
+}
+
+static void burst_find_prior(struct interp_pair *p)
+{
+	if (p->stops)
+		led_find_prior(p);
+	else
+		own_find_prior(p);
+}
+
+INLINE void own_next(struct interp_pair *p)
+{
+	p->prior = p->burst++;
+	p->prior_from = p->from;
+	p->done = p->due;
+	p->from = p->to;
+	p->to = own_from(p, p->burst + 1);
+	p->due = own_stop(p, p->burst, p->from, p->to);
+}
+
+INLINE void own_back(struct interp_pair *p)
+{
+	p->burst = p->prior;
+	p->to = p->from;
+	p->from = p->prior_from;
+	p->due = p->done;
+	own_find_prior(p);
+}
+
 void pair_burst_next(struct interp_pair *p)
 {
+	if (!p->stops) {
+		own_next(p);
+		return;
+	}
 	p->prior = p->burst;
 	p->prior_from = p->from;
 	p->prior_before = p->before;
 	p->done = p->due;
 	do
-		burst_on(p);
+		led_on(p);
 	while (p->burst < p->bursts && burst_is_empty(p));
 }
 
 void pair_burst_back(struct interp_pair *p)
 {
-	if (p->stops)
-		p->behind = p->prior + 1 == p->burst ? p->due :
-			    led_stop(p, p->prior + 1);
+	if (!p->stops) {
+		own_back(p);
+		return;
+	}
+	p->behind = p->prior + 1 == p->burst ? p->due :
+		    led_stop(p, p->prior + 1);
 	p->burst = p->prior;
 	p->to = p->from;
 	p->from = p->prior_from;
 	p->due = p->done;
 	p->before = p->prior_before;
-	burst_find_prior(p);
+	led_find_prior(p);
 }
 
 static int64_t burst_stop(const struct interp_pair *p, int64_t j)
@@ -241,8 +273,8 @@ void pair_set_bursts(struct interp_pair *p, int64_t n,
 	p->stops = lead ? lead->bursts : 0;
 	p->burst = at_end ? n : 0;
 	burst_look(p);
-	while (p->burst < p->bursts && burst_is_empty(p))
-		burst_on(p);
+	while (p->stops && p->burst < n && burst_is_empty(p))
+		led_on(p);
 	burst_find_prior(p);
 }
 
@@ -361,13 +393,6 @@ static int64_t least(int64_t a, int64_t b)
 	return a < b ? a : b;
 }
 
-/* At least one pulse, so that a run comes to its end whatever the pair
- * contains. */
-static int64_t row_of(int64_t n, int64_t row)
-{
-	return row > 1 ? least(n, row) : 1;
-}
-
 static void pair_add(struct interp_pair *p, int64_t m, int64_t s)
 {
 	p->m += m;
@@ -375,37 +400,64 @@ static void pair_add(struct interp_pair *p, int64_t m, int64_t s)
 	p->dev += p->b * m - p->a * s;
 }
 
-/* With bursts, an input gives many pulses in a row. */
-static void bursts_run(struct interp_pair *p, int64_t n, uint8_t *second)
+/* What is left of @n is less than the burst: a row of @main at most, and then
+ * the others. */
+static void row_last(int64_t main, int64_t n, uint8_t *row)
 {
-	while (n > 0) {
-		const bool due = p->m >= p->due;
-		const int64_t row = row_of(n, due ? p->to - p->s :
-						    p->due - p->m);
-
-		memset(second, due, (size_t)row);
-		second += row;
-		n -= row;
-		pair_add(p, due ? 0 : row, due ? row - 1 : 0);
-		if (due)
-			pair_second(p, 1);
-	}
+	row[0] = (uint8_t)least(main, n);
+	row[1] = (uint8_t)(n - row[0]);
 }
 
-static void bursts_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
+uint32_t pair_rows(struct interp_pair *p, uint32_t n, uint8_t *restrict row)
 {
-	while (n > 0) {
-		const bool due = pair_was_due(p);
-		const int64_t left = p->s > p->from ? p->s - p->from : 1;
-		const int64_t row = row_of(n, due ? left : p->m - p->done);
+	const int64_t was = p->s;
+	int64_t left = n, m = p->m;
+	uint32_t k = 0;
 
-		memset(second, due, (size_t)row);
-		second += row;
-		n -= row;
-		if (due)
-			pair_second(p, -1);
-		pair_add(p, due ? 0 : -row, due ? 1 - row : 0);
+	for (; p->due - m + p->to - p->s <= left; k += 2) {
+		row[k] = (uint8_t)(p->due - m);
+		row[k + 1] = (uint8_t)(p->to - p->s);
+		left -= p->due - m + p->to - p->s;
+		m = p->due;
+		p->s = p->to;
+		own_next(p);
 	}
+	row_last(p->due - m, left, row + k);
+	m += row[k];
+	p->s += row[k + 1];
+	p->dev += p->b * (m - p->m) - p->a * (p->s - was);
+	p->m = m;
+	return k + 2;
+}
+
+uint32_t pair_rows_back(struct interp_pair *p, uint32_t n,
+			uint8_t *restrict row)
+{
+	const int64_t was = p->s;
+	int64_t left = n, m = p->m;
+	uint32_t k = 2;
+
+	row[0] = 0;
+	row[1] = (uint8_t)least(left, p->s - p->from);
+	left -= row[1];
+	p->s -= row[1];
+	for (; p->prior >= 0 && m - p->done + p->from - p->prior_from <= left;
+	     k += 2) {
+		row[k] = (uint8_t)(m - p->done);
+		row[k + 1] = (uint8_t)(p->from - p->prior_from);
+		left -= m - p->done + p->from - p->prior_from;
+		m = p->done;
+		own_back(p);
+		p->s = p->from;
+	}
+	row_last(m - p->done, left, row + k);
+	if (row[k + 1] > 0)
+		own_back(p);
+	m -= row[k];
+	p->s -= row[k + 1];
+	p->dev += p->b * (m - p->m) - p->a * (p->s - was);
+	p->m = m;
+	return k + 2;
 }
 
 /*
@@ -472,9 +524,7 @@ static void limits_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
 
 void pair_run(struct interp_pair *p, uint32_t n, uint8_t *second)
 {
-	if (p->bursts)
-		bursts_run(p, n, second);
-	else if (p->bits)
+	if (p->bits)
 		bits_run(p, n, second);
 	else
 		limits_run(p, n, second);
@@ -482,9 +532,7 @@ void pair_run(struct interp_pair *p, uint32_t n, uint8_t *second)
 
 void pair_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
 {
-	if (p->bursts)
-		bursts_run_back(p, n, second);
-	else if (p->bits)
+	if (p->bits)
 		bits_run_back(p, n, second);
 	else
 		limits_run_back(p, n, second);

@@ -101,7 +101,7 @@ void pair_set_min_switch(struct interp_pair *p, int64_t half, bool at_end);
 void pair_set_limit(struct interp_pair *p, int64_t limit, bool at_end);
 
 /**
- * pair_set_bursts() - the same, with @n bursts; b > 0.
+ * pair_set_bursts() - the same, with @n bursts; b > 0.  Without @lead, @n <= b.
  * @lead: NULL, or another pair with as many main pulses, which runs by bursts.
  * This pair then has its bursts only where @lead has one.
  */
@@ -242,7 +242,19 @@ void pair_seek(struct interp_pair *p, int64_t n);
 int64_t pair_sent(const struct interp_pair *p, int64_t m);
 
 /**
- * pair_run() - give the next @n pulses; pair_run_back() takes the last @n back.
+ * pair_rows() - of a pair with bursts, give the next @n pulses, 255 at most;
+ * pair_rows_back() takes the last @n back.
+ *
+ * @row: how many the main input gave, then the secondary, the main input again,
+ * and so on; some are 0.  Return: how many, at most PAIR_ROWS(@n).
+ */
+#define PAIR_ROWS(n)	(2 * (n) + 4)
+uint32_t pair_rows(struct interp_pair *p, uint32_t n, uint8_t *restrict row);
+uint32_t pair_rows_back(struct interp_pair *p, uint32_t n,
+			uint8_t *restrict row);
+
+/**
+ * pair_run() - the same for a pair without bursts.
  *
  * @second: for each pulse, in the order of the walk, 1 if the secondary input
  * gave it.  The pair must have @n pulses in this direction.

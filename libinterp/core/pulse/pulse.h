@@ -15,6 +15,8 @@
 
 #include "interp/cursor.h"
 
+#include <string.h>
+
 /* For products of two measures. */
 __extension__ typedef __int128 pulse_wide;
 __extension__ typedef unsigned __int128 pulse_uwide;
@@ -131,6 +133,42 @@ static inline uint16_t pulse_turned(uint32_t pulses)
 static inline uint32_t pulse_move(uint32_t axis, bool down)
 {
 	return (down ? 0x101u : 1u) << axis;
+}
+
+/*
+ * Rows of points are short, and each has another length.  A loop over the
+ * points of a row ends at another place each time, and the processor guesses
+ * wrong.  So a row is written eight points at a time, beyond its end too, and
+ * the next one begins where this one ends.
+ */
+#define PULSE_AT_ONCE	8
+
+/** pulse_copy() - @n points; PULSE_AT_ONCE - 1 more may be read and written. */
+INLINE void pulse_copy(uint16_t *ret, const uint16_t *from, uint32_t n)
+{
+	uint32_t k = 0;
+
+	do {
+		memcpy(ret + k, from + k, PULSE_AT_ONCE * sizeof(*ret));
+		k += PULSE_AT_ONCE;
+	} while (k < n);
+}
+
+/** pulse_row() - @n points of @pulse; not more than @room are written. */
+INLINE void pulse_row(uint16_t *ret, uint32_t room, uint16_t pulse, uint32_t n)
+{
+	const uint16_t some[PULSE_AT_ONCE] = {
+		pulse, pulse, pulse, pulse, pulse, pulse, pulse, pulse,
+	};
+	uint32_t k = 0;
+
+	for (; room - k >= PULSE_AT_ONCE; k += PULSE_AT_ONCE) {
+		memcpy(ret + k, some, sizeof(some));
+		if (k + PULSE_AT_ONCE >= n)
+			return;
+	}
+	for (; k < n; k++)
+		ret[k] = pulse;
 }
 
 /**

@@ -135,7 +135,8 @@ static inline uint32_t tree_tick_back(struct interp_cursor *c)
  * input gives it; then each input makes its own ticks, and they are put in
  * order.  Three levels hold eight axes.
  */
-#define RUN_MAX	64
+#define RUN_MAX		64
+#define RUN_ROOM	(RUN_MAX + PULSE_AT_ONCE)
 
 static void leaf_run(struct interp_cursor *c, int8_t axis, int ticks,
 		     uint16_t *ret)
@@ -143,8 +144,7 @@ static void leaf_run(struct interp_cursor *c, int8_t axis, int ticks,
 	const uint16_t pulse = c->backward ? c->pulse_back[axis] :
 					     c->pulse[axis];
 
-	for (int k = 0; k < ticks; k++)
-		ret[k] = pulse;
+	pulse_row(ret, RUN_ROOM, pulse, (uint32_t)ticks);
 	c->pos[axis] += (c->backward ? -ticks : ticks) * c->sign[axis];
 }
 
@@ -169,10 +169,37 @@ static void pair_ticks(struct interp_cursor *c, struct interp_pair *p,
 }
 
 static void tree_run(struct interp_cursor *c, int8_t code, uint32_t ticks,
+		     uint16_t *ret);
+
+/* With bursts, an input gives many pulses in a row. */
+static void rows_run(struct interp_cursor *c, struct interp_pair *p,
+		     uint32_t ticks, uint16_t *ret)
+{
+	uint16_t pulse[2][RUN_ROOM];
+	const uint16_t *a = pulse[0], *b = pulse[1];
+	uint8_t row[PAIR_ROWS(RUN_MAX)];
+	const int64_t m = p->m;
+	const uint32_t n = c->backward ? pair_rows_back(p, ticks, row) :
+					 pair_rows(p, ticks, row);
+	const uint32_t by_a = (uint32_t)llabs(p->m - m);
+
+	tree_run(c, p->in_a, by_a, pulse[0]);
+	tree_run(c, p->in_b, ticks - by_a, pulse[1]);
+	for (uint32_t k = 0; k < n; k += 2) {
+		pulse_copy(ret, a, row[k]);
+		a += row[k];
+		ret += row[k];
+		pulse_copy(ret, b, row[k + 1]);
+		b += row[k + 1];
+		ret += row[k + 1];
+	}
+}
+
+static void tree_run(struct interp_cursor *c, int8_t code, uint32_t ticks,
 		     uint16_t *ret)
 {
 	struct interp_pair *p;
-	uint16_t pulse[2][RUN_MAX];
+	uint16_t pulse[2][RUN_ROOM];
 	uint8_t second[RUN_MAX];
 	uint32_t n = 0;
 	int64_t m, s;
@@ -182,6 +209,10 @@ static void tree_run(struct interp_cursor *c, int8_t code, uint32_t ticks,
 		return;
 	}
 	p = &c->pair[~code];
+	if (p->bursts) {
+		rows_run(c, p, ticks, ret);
+		return;
+	}
 	m = p->m;
 	s = p->s;
 	pair_ticks(c, p, ticks, second);
@@ -202,6 +233,19 @@ static void tree_run(struct interp_cursor *c, int8_t code, uint32_t ticks,
 	}
 }
 
+/* Only a pair with a limit writes no more than it is asked for. */
+static void tree_some(struct interp_cursor *c, uint32_t ticks, uint16_t *ret)
+{
+	uint16_t some[RUN_ROOM];
+
+	if (c->root < 0 && !c->pair[~c->root].bursts) {
+		tree_run(c, c->root, ticks, ret);
+		return;
+	}
+	tree_run(c, c->root, ticks, some);
+	memcpy(ret, some, ticks * sizeof(*ret));
+}
+
 /* Every tick makes a pulse. */
 static uint32_t tree_ticks(struct interp_cursor *c, uint32_t ticks,
 			   uint16_t *ret)
@@ -210,7 +254,7 @@ static uint32_t tree_ticks(struct interp_cursor *c, uint32_t ticks,
 
 	for (uint32_t done = 0, n; done < ticks; done += n) {
 		n = ticks - done < RUN_MAX ? ticks - done : RUN_MAX;
-		tree_run(c, c->root, n, ret + done);
+		tree_some(c, n, ret + done);
 	}
 	c->tick += (uint32_t)dir * ticks;
 	c->measure += dir * (int64_t)ticks;
