@@ -286,18 +286,6 @@ void pair_set_bits(struct interp_pair *p, const uint64_t *bits)
 	p->bits = bits;
 }
 
-static void bits_run(struct interp_pair *p, uint32_t n, uint8_t *second)
-{
-	for (uint32_t k = 0; k < n; k++)
-		second[k] = !pair_forward(p);
-}
-
-static void bits_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
-{
-	for (uint32_t k = 0; k < n; k++)
-		second[k] = !pair_back(p);
-}
-
 /* -- At once --------------------------------------------------------------- */
 
 static int64_t within(int64_t v, int64_t low, int64_t high)
@@ -516,6 +504,56 @@ static void limits_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
 		}
 		given = limit_run(p, p->dev - p->limit - p->b + p->a - 1,
 				  some, second);
+		pair_add(p, given - some, -given);
+		second += some;
+		n -= some;
+	}
+}
+
+/* As long as both inputs have pulses, the bits alone decide.  Return: how many
+ * of @n are the secondary input's. */
+static int64_t bits_read(const struct interp_pair *p, int64_t at, int by,
+			 int64_t n, uint8_t *second)
+{
+	int64_t given = 0;
+
+	for (int64_t k = 0; k < n; k++) {
+		second[k] = pair_bit(p, at + by * k);
+		given += second[k];
+	}
+	return given;
+}
+
+static void bits_run(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const int64_t some = least(n, least(p->a - p->m, p->b - p->s));
+		int64_t given;
+
+		if (some == 0) {
+			memset(second, p->s < p->b, (size_t)n);
+			pair_add(p, p->s < p->b ? 0 : n, p->s < p->b ? n : 0);
+			return;
+		}
+		given = bits_read(p, p->m + p->s, 1, some, second);
+		pair_add(p, some - given, given);
+		second += some;
+		n -= some;
+	}
+}
+
+static void bits_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
+{
+	while (n > 0) {
+		const int64_t some = least(n, least(p->m, p->s));
+		int64_t given;
+
+		if (some == 0) {
+			memset(second, p->s > 0, (size_t)n);
+			pair_add(p, p->s > 0 ? 0 : -n, p->s > 0 ? -n : 0);
+			return;
+		}
+		given = bits_read(p, p->m + p->s - 1, -1, some, second);
 		pair_add(p, given - some, -given);
 		second += some;
 		n -= some;
