@@ -7,8 +7,6 @@
  */
 #include "pulse/strategy.h"
 
-#include <string.h>
-
 /* Bit by bit: without a division, and always in the same time. */
 int64_t pair_isqrt(uint64_t n, uint64_t m)
 {
@@ -286,18 +284,6 @@ void pair_set_bits(struct interp_pair *p, const uint64_t *bits)
 	p->bits = bits;
 }
 
-static void bits_run(struct interp_pair *p, uint32_t n, uint8_t *second)
-{
-	for (uint32_t k = 0; k < n; k++)
-		second[k] = !pair_forward(p);
-}
-
-static void bits_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
-{
-	for (uint32_t k = 0; k < n; k++)
-		second[k] = !pair_back(p);
-}
-
 /* -- At once --------------------------------------------------------------- */
 
 static int64_t within(int64_t v, int64_t low, int64_t high)
@@ -386,18 +372,11 @@ int64_t pair_sent(const struct interp_pair *p, int64_t m)
 	return at.from;
 }
 
-/* -- Many pulses ----------------------------------------------------------- */
+/* -- In rows --------------------------------------------------------------- */
 
 static int64_t least(int64_t a, int64_t b)
 {
 	return a < b ? a : b;
-}
-
-static void pair_add(struct interp_pair *p, int64_t m, int64_t s)
-{
-	p->m += m;
-	p->s += s;
-	p->dev += p->b * m - p->a * s;
 }
 
 /* What is left of @n is less than the burst: a row of @main at most, and then
@@ -458,84 +437,6 @@ uint32_t pair_rows_back(struct interp_pair *p, uint32_t n,
 	p->dev += p->b * (m - p->m) - p->a * (p->s - was);
 	p->m = m;
 	return k + 2;
-}
-
-/*
- * With a limit, the inputs change all the time, and it is hard to predict which
- * comes next.  So there is no branch.  @over is how far e is below the limit
- * (forward), or above the value that tells the last pulse (back).  In both
- * cases it falls by b with each pulse of the main input and rises by a with
- * each of the secondary.  Return: the number of the latter.
- */
-static int64_t limit_run(const struct interp_pair *p, int64_t over, int64_t n,
-			 uint8_t *second)
-{
-	const int64_t a = p->a, b = p->b;
-	int64_t given = 0;
-
-	for (int64_t k = 0; k < n; k++) {
-		const int64_t due = over >> 63;
-
-		over += ((a + b) & due) - b;
-		second[k] = due & 1;
-		given -= due;
-	}
-	return given;
-}
-
-/* Until the main input is at its end, the limit alone decides. */
-static void limits_run(struct interp_pair *p, int64_t n, uint8_t *second)
-{
-	while (n > 0) {
-		const int64_t some = least(n, p->a - p->m);
-		int64_t given;
-
-		if (some == 0) {
-			memset(second, 1, (size_t)n);
-			pair_add(p, 0, n);
-			return;
-		}
-		given = limit_run(p, p->limit - p->dev, some, second);
-		pair_add(p, some - given, given);
-		second += some;
-		n -= some;
-	}
-}
-
-/* The same until the secondary input is back at its start. */
-static void limits_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
-{
-	while (n > 0) {
-		const int64_t some = least(n, p->s);
-		int64_t given;
-
-		if (some == 0) {
-			memset(second, 0, (size_t)n);
-			pair_add(p, -n, 0);
-			return;
-		}
-		given = limit_run(p, p->dev - p->limit - p->b + p->a - 1,
-				  some, second);
-		pair_add(p, given - some, -given);
-		second += some;
-		n -= some;
-	}
-}
-
-void pair_run(struct interp_pair *p, uint32_t n, uint8_t *second)
-{
-	if (p->bits)
-		bits_run(p, n, second);
-	else
-		limits_run(p, n, second);
-}
-
-void pair_run_back(struct interp_pair *p, uint32_t n, uint8_t *second)
-{
-	if (p->bits)
-		bits_run_back(p, n, second);
-	else
-		limits_run_back(p, n, second);
 }
 
 /* -- By name --------------------------------------------------------------- */
