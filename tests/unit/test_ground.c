@@ -514,6 +514,8 @@ bool __wrap_interp_program_any_at(const struct interp_program *p, uint32_t i,
 	return __real_interp_program_any_at(p, i, s_mm, last, ret);
 }
 
+#define CURVES		44		/* of 11 pieces each */
+
 /* Curves that hardly leave the place, where C turns to and fro. Nothing says
  * how far C is from them but a look at every pulse. */
 static void begin_beside_curves(struct rig *r, const struct cycle_config *k,
@@ -526,7 +528,7 @@ static void begin_beside_curves(struct rig *r, const struct cycle_config *k,
 	assert_non_null(f);
 	fprintf(f, "G21 G90 F6000\nM3\nG0 Z0.1\nG1 Z0\nG1 C%g\nG1 C0\n",
 		first_c);
-	for (int i = 0; i < 58; i++) {
+	for (int i = 0; i < CURVES; i++) {
 		const bool back = i % 2 != 0;
 
 		fprintf(f, "G6.2 P4 K0 X%g C%g\nK0 X0 C1\nK0 X0.002 C2\n"
@@ -541,7 +543,7 @@ static void begin_beside_curves(struct rig *r, const struct cycle_config *k,
 	free(text);
 	for (int n = 0; n < 1000000 && (r->out.target[INTERP_C] > -1000 ||
 					r->c.state != STATE_TRAVEL ||
-					r->c.cursor.index < 450); n++)
+					r->c.cursor.index < CURVES); n++)
 		step(r, state_duty[r->c.state].power ? SPARKING_V : OPEN_V);
 	assert_int_equal(r->c.state, STATE_TRAVEL);
 }

