@@ -205,33 +205,74 @@ static bool is_softer(float a, float b, double most)
 	return x > SOFTER * y || y > SOFTER * x;
 }
 
-static bool is_apart(const struct pass *w, const struct interp_seg *a,
-		     const struct interp_seg *b)
-{
-	const double node = (double)a->node_mm_s;
+/* From a slow node to the next one. */
+struct side {
+	float a_mm_s2, j_mm_s3;		/* the least */
+	uint32_t last;			/* segment; UINT32_MAX: none */
+};
 
-	return node < SLOW * (double)a->feed_max_mm_s &&
-	       node < SLOW * (double)b->feed_max_mm_s &&
+static const struct side no_side = { INFINITY, INFINITY, UINT32_MAX };
+
+static void lengthen(struct side *k, const struct interp_seg *s, uint32_t i)
+{
+	k->a_mm_s2 = pass_least(k->a_mm_s2, s->a_mm_s2);
+	k->j_mm_s3 = pass_least(k->j_mm_s3, s->j_mm_s3);
+	k->last = i;
+}
+
+static bool is_apart(const struct pass *w, const struct side *a,
+		     const struct side *b)
+{
+	return a->last < UINT32_MAX &&
 	       (is_softer(a->a_mm_s2, b->a_mm_s2, w->travel_a_mm_s2) ||
 		is_softer(a->j_mm_s3, b->j_mm_s3, w->travel_j_mm_s3));
+}
+
+/* What a node is slow beside: the ceiling of a segment, but no more than a
+ * short one comes to from its other node. */
+static double beside_mm_s(const struct pass *w, uint32_t i, double other_mm_s)
+{
+	const struct interp_seg *s = &w->segs[i];
+	const double feed = (double)s->feed_max_mm_s;
+
+	return pass_is_short(w, i) ?
+	       smaller(feed, other_mm_s +
+			     sqrt(w->travel_a_mm_s2 * s->length_mm)) : feed;
+}
+
+/* Is the node between segments @last and @i slow?  A bend of short lines is as
+ * slow all the way. */
+static bool is_slow(const struct pass *w, uint32_t last, uint32_t i)
+{
+	const struct interp_seg *s = w->segs;
+	const double node = (double)s[last].node_mm_s;
+	const double before = last > 0 ? (double)s[last - 1].node_mm_s : 0;
+
+	return node < SLOW * beside_mm_s(w, last, before) &&
+	       node < SLOW * beside_mm_s(w, i, (double)s[i].node_mm_s);
 }
 
 /* Stands in all corners between what is softer and what is harder. */
 static bool set_apart(struct pass *w, uint32_t from, uint32_t to)
 {
-	const struct interp_seg *last = NULL;
+	struct side was = no_side, is = no_side;
 	bool any = false;
 
-	for (uint32_t i = from; i < to; i++) {
-		const struct interp_seg *s = &w->segs[i];
-
-		if (s->kind >= INTERP_BEGIN)
+	for (uint32_t i = from; i <= to; i++) {
+		if (i < to && w->segs[i].kind >= INTERP_BEGIN)
 			continue;
-		if (last && is_apart(w, last, s)) {
-			pass_set_stand(w, i - 1, true);
-			any = true;
+		if (is.last < UINT32_MAX &&
+		    (i == to || is_slow(w, is.last, i))) {
+			if (is_apart(w, &was, &is)) {
+				pass_set_stand(w, was.last, true);
+				any = true;
+			}
+			was = is;
+			was.last = i - 1;
+			is = no_side;
 		}
-		last = s;
+		if (i < to)
+			lengthen(&is, &w->segs[i], i);
 	}
 	return any;
 }
@@ -244,53 +285,58 @@ static uint32_t behind_stand(const struct pass *w, uint32_t at, uint32_t to)
 	return at < to ? at + 1 : to;
 }
 
-/* A stand is in the node before @mid.  Does it pay, in the move from @from to
- * @to?  It is taken away if it does not. */
-static bool stand_pays(struct pass *w, uint32_t from, uint32_t mid,
-		       uint32_t to, float *v2)
+/* A stand is in the node before @mid.  Return: the share of the time that the
+ * move from @from to @to takes with it; at F, if there it costs too much. */
+static double stand_share(struct pass *w, uint32_t from, uint32_t mid,
+			  uint32_t to, float *v2)
 {
-	double apart = pass_moves_s(w, from, to, false, v2);
+	const double apart = pass_moves_s(w, from, to, false, v2);
+	double share, fed = 0;
 
 	pass_set_stand(w, mid - 1, false);
-	if (apart >= PASS_WORTH * pass_moves_s(w, from, to, false, v2))
-		return false;
+	share = apart / pass_moves_s(w, from, to, false, v2);
+	if (share < PASS_WORTH)
+		fed = 1 / pass_moves_s(w, from, to, true, v2);
 	pass_set_stand(w, mid - 1, true);
-	apart = pass_moves_s(w, from, to, true, v2);
-	pass_set_stand(w, mid - 1, false);
-	if (apart >= PASS_COST * pass_moves_s(w, from, to, true, v2))
-		return false;
-	pass_set_stand(w, mid - 1, true);
-	return true;
+	if (fed > 0)
+		fed *= pass_moves_s(w, from, to, true, v2);
+	return fed >= PASS_COST ? fed : share;
 }
 
 /* If fewer stands go than one for so many that stay, the next look would find
  * hardly any, and takes as long as this one. */
 #define JOIN_SHARE	4
 
-/* Of each two moves that follow each other, take the stand away that saves too
- * little.  Return: does another look pay? */
+/* Take the stands away that save too little, of those beside each other only
+ * the one that saves least: what the others save depends on it.  Return: does
+ * another look pay? */
 static bool join_moves(struct pass *w, uint32_t from, uint32_t to, float *v2)
 {
+	double before = 0, last = 0, next;	/* shares */
 	uint32_t kept = 0, taken = 0;
 
-	while (from < to) {
+	for (;;) {
 		const uint32_t mid = behind_stand(w, from, to);
-		const uint32_t end = behind_stand(w, mid, to);
+		const bool ends = mid == to;
 
-		if (mid == to)
-			break;
-		if (stand_pays(w, from, mid, end, v2)) {
-			kept++;
-			from = mid;
-		} else {
+		next = ends ? 0 : stand_share(w, from, mid,
+					      behind_stand(w, mid, to), v2);
+		if (last >= PASS_WORTH && last >= next && last > before) {
+			pass_set_stand(w, from - 1, false);
 			taken++;
-			from = end;
+		} else {
+			kept += last > 0;
 		}
+		if (ends)
+			break;
+		before = last;
+		last = next;
+		from = mid;
 	}
 	return taken > kept / JOIN_SHARE;
 }
 
-#define JOIN_MOST	16		/* each may halve their number */
+#define JOIN_MOST	16
 
 void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *v2)
 {
