@@ -27,6 +27,7 @@
 #define MOST_QUICK	1.15
 /* The same of a rigid body, whose bends change within less than a window
  * (docs/gap-servo.md, "Not there yet"). */
+#define MOST_A_BODY	1.4
 #define MOST_J_BODY	1.2
 
 /* A corner and a rounding. */
@@ -411,7 +412,7 @@ static void arcs_of_a_leaning_tool_keep_the_limits(void **st)
 static void bodies_keep_the_limits(void **st)
 {
 	(void)st;
-	try(body, (struct most) { MOST_A, MOST_J_BODY });
+	try(body, (struct most) { MOST_A_BODY, MOST_J_BODY });
 }
 
 int main(void)
