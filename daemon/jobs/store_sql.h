@@ -42,7 +42,6 @@ enum store_keep {
  * up to 1 kB for an event. */
 #define STORE_MISS_FROM	32768
 
-
 struct store_value {
 	char kind;			/* i, d, s as in store_do() */
 	union {
