@@ -393,7 +393,8 @@ uint32_t pair_rows(struct interp_pair *p, uint32_t n, uint8_t *restrict row)
 	int64_t left = n, m = p->m;
 	uint32_t k = 0;
 
-	for (; p->due - m + p->to - p->s <= left; k += 2) {
+	/* Behind the last burst, due is as far as a number goes. */
+	for (; p->due - m <= left - (p->to - p->s); k += 2) {
 		row[k] = (uint8_t)(p->due - m);
 		row[k + 1] = (uint8_t)(p->to - p->s);
 		left -= p->due - m + p->to - p->s;
