@@ -17,6 +17,7 @@ struct move {
 	uint32_t from, to;
 	bool fed;			/* no faster than F */
 	double a_mm_s2, j_mm_s3;	/* the least of them */
+	double most_mm_s;		/* it never comes to more */
 	double slope_mm_s2;		/* the mean of a ramp */
 };
 
@@ -52,7 +53,8 @@ static double rise_mm_s(double mm, double a, double j)
 static double comes_to_mm_s(const struct interp_seg *s, const struct move *m,
 			    double from, double to)
 {
-	const double top = ceiling_mm_s(s, m->fed), node = larger(from, to);
+	const double top = smaller(ceiling_mm_s(s, m->fed), m->most_mm_s);
+	const double node = larger(from, to);
 	double v;
 
 	if (node >= top)
@@ -118,8 +120,9 @@ static struct move next_move(const struct pass *w, uint32_t from, uint32_t to,
 {
 	const struct interp_seg *segs = w->segs;
 	struct move ret = {
-		from, from, fed, w->travel_a_mm_s2, w->travel_j_mm_s3, 0
+		from, from, fed, w->travel_a_mm_s2, w->travel_j_mm_s3, 0, 0
 	};
+	double mm = 0;
 
 	do {
 		const struct interp_seg *k = &segs[ret.to++];
@@ -128,7 +131,9 @@ static struct move next_move(const struct pass *w, uint32_t from, uint32_t to,
 			continue;
 		ret.a_mm_s2 = smaller(ret.a_mm_s2, (double)k->a_mm_s2);
 		ret.j_mm_s3 = smaller(ret.j_mm_s3, (double)k->j_mm_s3);
+		mm += k->length_mm;
 	} while (ret.to < to && !(segs[ret.to - 1].flags & INTERP_SEG_STAND));
+	ret.most_mm_s = rise_mm_s(mm, ret.a_mm_s2, ret.j_mm_s3);
 	ret.slope_mm_s2 = move_slope_mm_s2(segs, &ret);
 	return ret;
 }
