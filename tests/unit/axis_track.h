@@ -354,4 +354,29 @@ static inline struct cycle_config dry(double a_mm_s2, double j_mm_s3)
 	return k;
 }
 
+/* What a test keeps of the cycles behind it. */
+struct ring;
+
+/* To the end of the program, which is a hold. */
+static inline void track_there(struct rig *r, struct ring *k,
+			       void (*watch)(struct rig *r, struct ring *k),
+			       int cycles)
+{
+	tell(r, CYCLE_START);
+	for (int n = 0; n < cycles && r->c.state == STATE_TRAVEL; n++)
+		watch(r, k);
+	assert_int_equal(r->c.state, STATE_HOLD);
+}
+
+/* Back to its start. */
+static inline void track_back(struct rig *r, struct ring *k,
+			      void (*watch)(struct rig *r, struct ring *k),
+			      int cycles)
+{
+	tell_mm(r, CYCLE_RETRACT, 1e9);
+	for (int n = 0; n < cycles && r->c.hold.moving; n++)
+		watch(r, k);
+	assert_true(place(r) == 0);
+}
+
 #endif /* AXIS_TRACK_H */

@@ -287,15 +287,9 @@ static void there_and_back(struct made m)
 	struct rig r;
 
 	rig_take(&r, m, &k);
-	tell(&r, CYCLE_START);
-	for (int n = 0; n < CYCLES && r.c.state == STATE_TRAVEL; n++)
-		watch(&r, &ring);
-	assert_int_equal(r.c.state, STATE_HOLD);
-	tell_mm(&r, CYCLE_RETRACT, 1e9);
+	track_there(&r, &ring, watch, CYCLES);
 	ring.n = 0;
-	for (int n = 0; n < CYCLES && r.c.hold.moving; n++)
-		watch(&r, &ring);
-	assert_true(place(&r) == 0);
+	track_back(&r, &ring, watch, CYCLES);
 	rig_free(&r);
 }
 

@@ -205,15 +205,9 @@ static void nodes_ask_of_no_axis_more_than_it_can_do(void **st)
 
 		set_machine(&s);
 		rig_take(&r, random_nodes(&s), &k);
-		tell(&r, CYCLE_START);
-		for (int n = 0; n < CYCLES && r.c.state == STATE_TRAVEL; n++)
-			watch(&r, &ring);
-		assert_int_equal(r.c.state, STATE_HOLD);
-		tell_mm(&r, CYCLE_RETRACT, 1e9);
+		track_there(&r, &ring, watch, CYCLES);
 		ring.n = 0;
-		for (int n = 0; n < CYCLES && r.c.hold.moving; n++)
-			watch(&r, &ring);
-		assert_true(place(&r) == 0);
+		track_back(&r, &ring, watch, CYCLES);
 		rig_free(&r);
 	}
 }

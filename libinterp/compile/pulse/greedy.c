@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* greedy.c - the fewest changes of axis that a line in a tube can have */
 #include "pulse/greedy.h"
+#include "interp/smaller.h"
 
 #include <stdlib.h>
-
-static int64_t least(int64_t x, int64_t y)
-{
-	return x < y ? x : y;
-}
 
 /* How many pulses @main may give in a row from (m, s). */
 static int64_t reach(const struct greedy_line *l, bool main, int64_t m,
@@ -16,9 +12,9 @@ static int64_t reach(const struct greedy_line *l, bool main, int64_t m,
 	const int64_t e = l->b * m - l->a * s;
 
 	if (!main)
-		return least(l->b - s, (l->half_width + e) / l->a);
+		return fewer(l->b - s, (l->half_width + e) / l->a);
 	return l->b == 0 ? l->a - m :
-	       least(l->a - m, (l->half_width - e) / l->b);
+	       fewer(l->a - m, (l->half_width - e) / l->b);
 }
 
 /* If neither may pulse: which axis goes less far astray?  An axis at its end

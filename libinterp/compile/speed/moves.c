@@ -341,7 +341,7 @@ static bool join_moves(struct pass *w, uint32_t from, uint32_t to, float *v2)
 	return taken > kept / JOIN_SHARE;
 }
 
-#define JOIN_MOST	16
+#define JOIN_MOST	16		/* looks */
 
 void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *v2)
 {

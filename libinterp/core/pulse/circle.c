@@ -141,7 +141,7 @@ static void tail_forward(struct interp_circle *k, int8_t ret[2])
 
 /* -- Along stored runs ---------------------------------------------------- */
 
-void circle_run_pulse(const struct interp_circle *k, int8_t ret[2])
+static void run_pulse(const struct interp_circle *k, int8_t ret[2])
 {
 	const int axis = (int)((k->run + k->run_first) & 1);
 
@@ -160,7 +160,7 @@ static void runs_forward(struct interp_circle *k, int8_t ret[2])
 		k->sent = 0;
 	}
 	k->sent++;
-	circle_run_pulse(k, ret);
+	run_pulse(k, ret);
 	circle_move(k, ret);
 }
 
@@ -168,7 +168,7 @@ static void runs_last(const struct interp_circle *k, int8_t ret[2])
 {
 	ret[0] = ret[1] = 0;
 	if (k->sent > 0)
-		circle_run_pulse(k, ret);
+		run_pulse(k, ret);
 }
 
 static void runs_back(struct interp_circle *k, int8_t ret[2])

@@ -14,6 +14,7 @@
  * twice the sum over the rows (circle_rows.c), less that difference.  The rows
  * from the start are many, so the program keeps the measure at some places.
  */
+#include "interp/smaller.h"
 #include "pulse/pair.h"
 #include "pulse/pulse.h"
 
@@ -28,11 +29,6 @@ struct seek {
 	int64_t area;			/* twice the one swept so far */
 	bool measures;			/* it is asked for */
 };
-
-static int64_t least(int64_t a, int64_t b)
-{
-	return a < b ? a : b;
-}
 
 /* Go to this place in the same quadrant. */
 static void stretch(struct seek *s, int64_t in, int64_t out)
@@ -136,7 +132,7 @@ static int64_t kept(const struct interp_circle *k, int64_t places)
 /* From the last place that the program keeps.  Return: the measure. */
 static int64_t by_places(struct interp_circle *k, int64_t ticks)
 {
-	const int64_t n = least(ticks / CIRCLE_PLACE_TICKS, k->nplaces);
+	const int64_t n = fewer(ticks / CIRCLE_PLACE_TICKS, k->nplaces);
 	const int64_t before = n * CIRCLE_PLACE_TICKS;
 	const int64_t measure = n > 0 ? kept(k, n) : 0;
 	int64_t area;
@@ -190,7 +186,7 @@ static int64_t row(struct interp_circle *k, int64_t dx, int64_t dy, int64_t n)
 static int64_t along_tail(struct interp_circle *k, int64_t ticks)
 {
 	const int64_t x = k->xe - k->x, y = k->ye - k->y;
-	const int64_t in_x = least(ticks, llabs(x));
+	const int64_t in_x = fewer(ticks, llabs(x));
 	const int64_t r2 = k->x * k->x + k->y * k->y - k->dev;
 	int64_t measure;
 
@@ -265,7 +261,7 @@ static int64_t along_runs(struct interp_circle *k, int64_t ticks)
 
 	for (ticks -= k->tick; ticks > 0; i++) {
 		const int64_t run = i < k->nruns ? k->runs[i] : 0;
-		const int64_t n = least(ticks, llabs(run));
+		const int64_t n = fewer(ticks, llabs(run));
 		const int64_t dir = run < 0 ? -1 : 1;
 		const bool in_y = (i + k->run_first) & 1;
 
@@ -304,7 +300,7 @@ void circle_marks(struct interp_circle *k, int32_t *ret)
 
 static int64_t go_to(struct interp_circle *k, uint32_t tick, bool measures)
 {
-	const int64_t compared = least(tick, k->tail);
+	const int64_t compared = fewer(tick, k->tail);
 	int64_t measure, tail;
 
 	if (k->runs)

@@ -9,6 +9,7 @@
  * loop of their own.  Where a quadrant ends, and in the tail, pulses are made
  * one by one.
  */
+#include "interp/smaller.h"
 #include "pulse/pulse.h"
 
 #include <math.h>
@@ -172,11 +173,6 @@ static void quadrant_keep(struct interp_cursor *c, const struct quadrant *q)
 	k->y = y;
 }
 
-static int64_t least(int64_t a, int64_t b)
-{
-	return a < b ? a : b;
-}
-
 static int64_t swept(int64_t coordinate)
 {
 	return (coordinate > 0 ? coordinate : 0) + 1;
@@ -307,7 +303,7 @@ static uint32_t run_forward(struct interp_cursor *c, uint32_t most,
 		if (k->sent == run_length(k) && !run_next(k))
 			break;
 		r = run_of(k);
-		some = least(run_length(k) - k->sent, most - n);
+		some = fewer(run_length(k) - k->sent, most - n);
 		if (c->measure + (some - 1) * r.sweeps >= c->want)
 			some = (c->want - c->measure - 1) / r.sweeps + 1;
 		pulse_row(ret + n, most - n, run_pulse(c, &r, false),
@@ -334,7 +330,7 @@ static uint32_t run_back(struct interp_cursor *c, uint32_t most, uint16_t *ret)
 
 	while (n < most) {
 		const struct run r = run_of(k);
-		int64_t some = least(k->sent, most - n);
+		int64_t some = fewer(k->sent, most - n);
 
 		if (c->measure - some * r.sweeps < c->want)
 			some = (c->measure - c->want) / r.sweeps;

@@ -8,6 +8,7 @@
  * pulse was that of the last axis in the order whose pair has one behind it
  * at this place, else the main axis's.
  */
+#include "interp/smaller.h"
 #include "pulse/couple.h"
 #include "pulse/pulse.h"
 
@@ -116,11 +117,6 @@ INLINE void flat_off(struct interp_cursor *c, uint32_t ticks, uint16_t *ret,
  * order of the axes.
  */
 #define NEVER	(INT64_C(1) << 40)	/* a place behind every line */
-
-INLINE int64_t fewer(int64_t a, int64_t b)
-{
-	return a < b ? a : b;
-}
 
 /* The place -1 is before the first burst of an axis. */
 INLINE uint64_t key_of(int64_t place, uint32_t i)

@@ -5,6 +5,7 @@
  * Totals are at most 2^30 and mu at most 1000 pulses, so e, M and the
  * products of a burst stay within 2^62; only the square of M needs 128 bits.
  */
+#include "interp/smaller.h"
 #include "pulse/strategy.h"
 
 /* Bit by bit: without a division, and always in the same time. */
@@ -374,16 +375,11 @@ int64_t pair_sent(const struct interp_pair *p, int64_t m)
 
 /* -- In rows --------------------------------------------------------------- */
 
-static int64_t least(int64_t a, int64_t b)
-{
-	return a < b ? a : b;
-}
-
 /* What is left of @n is less than the burst: a row of @main at most, and then
  * the others. */
 static void row_last(int64_t main, int64_t n, uint8_t *row)
 {
-	row[0] = (uint8_t)least(main, n);
+	row[0] = (uint8_t)fewer(main, n);
 	row[1] = (uint8_t)(n - row[0]);
 }
 
@@ -418,7 +414,7 @@ uint32_t pair_rows_back(struct interp_pair *p, uint32_t n,
 	uint32_t k = 2;
 
 	row[0] = 0;
-	row[1] = (uint8_t)least(left, p->s - p->from);
+	row[1] = (uint8_t)fewer(left, p->s - p->from);
 	left -= row[1];
 	p->s -= row[1];
 	for (; p->prior >= 0 && m - p->done + p->from - p->prior_from <= left;

@@ -3,13 +3,9 @@
  * pair_run.c - many pulses of a pair at once, by its limit or its stored bits
  */
 #include "pulse/pair.h"
+#include "interp/smaller.h"
 
 #include <string.h>
-
-static int64_t least(int64_t a, int64_t b)
-{
-	return a < b ? a : b;
-}
 
 static void pair_add(struct interp_pair *p, int64_t m, int64_t s)
 {
@@ -45,7 +41,7 @@ static int64_t limit_run(const struct interp_pair *p, int64_t over, int64_t n,
 static void limits_run(struct interp_pair *p, int64_t n, uint8_t *second)
 {
 	while (n > 0) {
-		const int64_t some = least(n, p->a - p->m);
+		const int64_t some = fewer(n, p->a - p->m);
 		int64_t given;
 
 		if (some == 0) {
@@ -64,7 +60,7 @@ static void limits_run(struct interp_pair *p, int64_t n, uint8_t *second)
 static void limits_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
 {
 	while (n > 0) {
-		const int64_t some = least(n, p->s);
+		const int64_t some = fewer(n, p->s);
 		int64_t given;
 
 		if (some == 0) {
@@ -97,7 +93,7 @@ static int64_t bits_read(const struct interp_pair *p, int64_t at, int by,
 static void bits_run(struct interp_pair *p, int64_t n, uint8_t *second)
 {
 	while (n > 0) {
-		const int64_t some = least(n, least(p->a - p->m, p->b - p->s));
+		const int64_t some = fewer(n, fewer(p->a - p->m, p->b - p->s));
 		int64_t given;
 
 		if (some == 0) {
@@ -115,7 +111,7 @@ static void bits_run(struct interp_pair *p, int64_t n, uint8_t *second)
 static void bits_run_back(struct interp_pair *p, int64_t n, uint8_t *second)
 {
 	while (n > 0) {
-		const int64_t some = least(n, least(p->m, p->s));
+		const int64_t some = fewer(n, fewer(p->m, p->s));
 		int64_t given;
 
 		if (some == 0) {

@@ -264,8 +264,6 @@ int64_t circle_last(const struct interp_circle *k);
  * Return: what they add to the measure; -1 if the circle is broken.
  */
 int64_t circle_seek(struct interp_circle *k, uint32_t tick);
-/** circle_run_pulse() - the pulse of the stored run in which it is. */
-void circle_run_pulse(const struct interp_circle *k, int8_t ret[2]);
 /**
  * circle_stand() - the same without the measure.  By comparison it takes the
  * same time for every radius.

@@ -10,6 +10,8 @@
 #ifndef INTERP_SMALLER_H
 #define INTERP_SMALLER_H
 
+#include <stdint.h>
+
 static inline double smaller(double a, double b)
 {
 	return a < b ? a : b;
@@ -18,6 +20,12 @@ static inline double smaller(double a, double b)
 static inline double larger(double a, double b)
 {
 	return a > b ? a : b;
+}
+
+/* The smaller of two whole numbers. */
+static inline int64_t fewer(int64_t a, int64_t b)
+{
+	return a < b ? a : b;
 }
 
 #endif /* INTERP_SMALLER_H */
