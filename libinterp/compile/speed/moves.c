@@ -11,6 +11,7 @@
 #include "speed/pass.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Segments @from up to, but not with, @to. */
 struct move {
@@ -38,10 +39,29 @@ static double slope_mm_s2(double v, double a, double j)
 	return v * j >= a * a ? v / (v / a + a / j) : sqrt(v * j) / 2;
 }
 
+/* The cube root of @x >= 0, within 10^-5 of it: near enough for a time that is
+ * an estimate, and it costs a tenth of cbrt().  A third of the bits of a float
+ * is within 4 %. */
+static double root3(double x)
+{
+	const float near = (float)x;
+	uint32_t bits;
+	double y;
+	float f;
+
+	memcpy(&bits, &near, sizeof(bits));
+	bits = bits / 3 + 709921077;
+	memcpy(&f, &bits, sizeof(f));
+	y = (double)f;
+	y = (2 * y + x / (y * y)) / 3;
+	return (2 * y + x / (y * y)) / 3;
+}
+
 /* How much faster it gets on @mm, from a stand and back to one. */
 static double rise_mm_s(double mm, double a, double j)
 {
-	return smaller(sqrt(a * mm), cbrt(j * mm * mm / 4));
+	return 16 * a * a * a < j * j * mm ? sqrt(a * mm) :
+					     root3(j * mm * mm / 4);
 }
 
 /* A node is slow if it is passed no faster than this share of what its sides
@@ -79,7 +99,7 @@ static double hop_rise_mm_s(const struct hop *k, const struct move *m)
 	const double rise = rise_mm_s(k->mm, m->a_mm_s2, m->j_mm_s3);
 	const double share = rise / (rise + 2 * node);
 
-	return smaller(larger(v - node, SLOW * v), rise * cbrt(share * share));
+	return smaller(larger(v - node, SLOW * v), rise * root3(share * share));
 }
 
 /* What the jerk leaves in the mean of the ramps of move @m: between slow nodes
@@ -308,45 +328,72 @@ static double stand_share(struct pass *w, uint32_t from, uint32_t mid,
 	return fed >= PASS_COST ? fed : share;
 }
 
+/* A share that is not known. */
+#define UNKNOWN		0.0f
+
+/* The shares of the stands, by the segment in front of each.  What is known of
+ * one holds as long as the stands beside it stay. */
+static void find_shares(struct pass *w, uint32_t from, uint32_t to, float *v2,
+			float *share)
+{
+	uint32_t mid = behind_stand(w, from, to);
+
+	while (mid < to) {
+		const uint32_t end = behind_stand(w, mid, to);
+
+		if (share[mid - 1] == UNKNOWN)
+			share[mid - 1] = (float)stand_share(w, from, mid, end,
+							    v2);
+		from = mid;
+		mid = end;
+	}
+}
+
 /* If fewer stands go than one for so many that stay, the next look would find
- * hardly any, and takes as long as this one. */
+ * hardly any. */
 #define JOIN_SHARE	4
 
 /* Take the stands away that save too little, of those beside each other only
  * the one that saves least: what the others save depends on it.  Return: does
  * another look pay? */
-static bool join_moves(struct pass *w, uint32_t from, uint32_t to, float *v2)
+static bool join_moves(struct pass *w, uint32_t from, uint32_t to, float *share)
 {
-	double before = 0, last = 0, next;	/* shares */
-	uint32_t kept = 0, taken = 0;
+	float before = UNKNOWN, is, next;
+	uint32_t kept = 0, taken = 0, prior = 0;
+	uint32_t at = behind_stand(w, from, to);
 
-	for (;;) {
-		const uint32_t mid = behind_stand(w, from, to);
-		const bool ends = mid == to;
+	for (is = at < to ? share[at - 1] : 0; at < to; is = next) {
+		const uint32_t end = behind_stand(w, at, to);
 
-		next = ends ? 0 : stand_share(w, from, mid,
-					      behind_stand(w, mid, to), v2);
-		if (last >= PASS_WORTH && last >= next && last > before) {
-			pass_set_stand(w, from - 1, false);
+		next = end < to ? share[end - 1] : 0;
+		if ((double)is >= PASS_WORTH && is >= next && is > before) {
+			pass_set_stand(w, at - 1, false);
+			if (prior > 0)
+				share[prior - 1] = UNKNOWN;
+			if (end < to)
+				share[end - 1] = UNKNOWN;
 			taken++;
 		} else {
-			kept += last > 0;
+			kept++;
 		}
-		if (ends)
-			break;
-		before = last;
-		last = next;
-		from = mid;
+		before = is;
+		prior = at;
+		at = end;
 	}
 	return taken > kept / JOIN_SHARE;
 }
 
 #define JOIN_MOST	16		/* looks */
 
-void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *v2)
+void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *room)
 {
-	if (!set_apart(w, from, to))
-		return;
-	for (int i = 0; i < JOIN_MOST && join_moves(w, from, to, v2); i++)
-		;
+	float *share = room + to;
+	bool more = set_apart(w, from, to);
+
+	for (uint32_t i = from; i < to; i++)
+		share[i] = UNKNOWN;
+	for (int i = 0; more && i < JOIN_MOST; i++) {
+		find_shares(w, from, to, room, share);
+		more = join_moves(w, from, to, share);
+	}
 }

@@ -708,9 +708,9 @@ double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
  * harder, where stands save time: each such side may be as soft as the axes
  * that turn on it, and one move over all of them is as soft as the softest.
  *
- * @v2: as for pass_moves_s()
+ * @room: for 2 * @to numbers
  */
-void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *v2);
+void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *room);
 
 /** pass_set_stand() - at the end of segment @i; false: take it away. */
 static inline void pass_set_stand(struct pass *w, uint32_t i, bool stands)

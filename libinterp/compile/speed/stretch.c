@@ -295,40 +295,38 @@ static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to,
 
 /* -- Which stands are the best -------------------------------------------- */
 
-#define APART	(CLASSES_MAX + 1)	/* pass_stand_apart() */
-
 struct tried {
 	uint32_t from, to;
-	float *v2;			/* room for the speeds */
-	double least_s;			/* 0: not known */
-	double fed_most_s;		/* at F */
-	int best;			/* class; CLASSES_MAX: no stands */
+	float *room;			/* of pass_stand_apart() */
+	double least_s, fed_most_s;	/* stands must take less; also at F */
 };
 
-/* The stands that are there, and will not be then, with the best so far. */
-static void compare(struct stretches *w, struct tried *k, int by)
+/* Begin with no stands. */
+static bool try_none(struct stretches *w, struct tried *k)
 {
-	double s, fed_s;
+	k->room = malloc((size_t)k->to * 2 * sizeof(*k->room));
+	if (!k->room)
+		return false;
+	k->least_s = PASS_WORTH *
+		     pass_moves_s(w->pass, k->from, k->to, false, k->room);
+	k->fed_most_s = PASS_COST *
+			pass_moves_s(w->pass, k->from, k->to, true, k->room);
+	return true;
+}
+
+/* Are the stands that are there the best so far? */
+static bool is_best(struct stretches *w, struct tried *k)
+{
+	double s;
 
 	if (!has_stands(w, k->from, k->to))
-		return;
-	s = pass_moves_s(w->pass, k->from, k->to, false, k->v2);
-	if (k->least_s > 0 && s >= k->least_s) {
-		take_stands(w, k->from, k->to);
-		return;
-	}
-	fed_s = pass_moves_s(w->pass, k->from, k->to, true, k->v2);
-	take_stands(w, k->from, k->to);
-	if (!(k->least_s > 0)) {
-		k->least_s = PASS_WORTH * pass_moves_s(w->pass, k->from, k->to,
-						       false, k->v2);
-		k->fed_most_s = PASS_COST * pass_moves_s(w->pass, k->from,
-							 k->to, true, k->v2);
-	}
-	if (s >= k->least_s || fed_s >= k->fed_most_s)
-		return;
+		return false;
+	s = pass_moves_s(w->pass, k->from, k->to, false, k->room);
+	if (s >= k->least_s || pass_moves_s(w->pass, k->from, k->to, true,
+					    k->room) >= k->fed_most_s)
+		return false;
 	k->least_s = s;
-	k->best = by;
+	return true;
 }
 
 /*
@@ -340,27 +338,28 @@ static void compare(struct stretches *w, struct tried *k, int by)
  */
 static void divide_all(struct stretches *w, uint32_t from, uint32_t to)
 {
-	struct tried k = { from, to, NULL, 0, 0, CLASSES_MAX };
+	struct tried k = { .from = from, .to = to };
+	int best = CLASSES_MAX;
 
 	for (int c = 0; c < CLASSES_MAX && is_any(w, c); c++) {
 		if (!may_pay(w, from, to, c))
 			continue;
-		if (!k.v2)
-			k.v2 = malloc((size_t)to * sizeof(*k.v2));
-		if (!k.v2)
+		if (!k.room && !try_none(w, &k))
 			return;
 		divide(w, from, to, c);
-		compare(w, &k, c);
+		if (is_best(w, &k))
+			best = c;
+		take_stands(w, from, to);
 	}
-	if (k.v2) {
-		pass_stand_apart(w->pass, from, to, k.v2);
-		compare(w, &k, APART);
+	if (!k.room)
+		return;
+	pass_stand_apart(w->pass, from, to, k.room);
+	if (!is_best(w, &k)) {
+		take_stands(w, from, to);
+		if (best < CLASSES_MAX)
+			divide(w, from, to, best);
 	}
-	if (k.best == APART)
-		pass_stand_apart(w->pass, from, to, k.v2);
-	else if (k.best < CLASSES_MAX)
-		divide(w, from, to, k.best);
-	free(k.v2);
+	free(k.room);
 }
 
 /* Up to the next node where the length passes to other axes. */
