@@ -101,13 +101,33 @@ static const char *const texts[] = {
 	"a line compiled: X Y Z", "a line compiled: arcs",
 	"a line compiled: X Y Z C", "a line compiled: X Y, tiny",
 	"a line compiled: any way, Z softer",
+	"a line compiled: arcs of many sizes",
 };
 
 #define ANY_WAY		4
+#define MANY_SIZES	5
+
+/* The smaller one is, the softer: whether to stand is asked at each. */
+static void write_sizes(FILE *f)
+{
+	double x = 0;
+
+	for (int i = 1; i <= LINES; i++) {
+		double d = 0.5 + round(8000 * fabs(sin(i * 1.7))) / 1000;
+
+		d = x > 0 ? -d : d;
+		x += d;
+		fprintf(f, "G%d X%.4f I%.4f J0\n", 2 + i % 2, x, d / 2);
+	}
+}
 
 static void write_text(FILE *f, int kind)
 {
 	fputs("G21 G90 F600\n", f);
+	if (kind == MANY_SIZES) {
+		write_sizes(f);
+		return;
+	}
 	for (int i = 1; i <= LINES; i++) {
 		const double a = i * 0.02, x = 20 * cos(a), y = 20 * sin(a);
 

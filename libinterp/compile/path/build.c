@@ -401,8 +401,7 @@ void build_seg_feed(struct interp_seg *seg, const struct interp_build_word *w,
 		    double feed_max_mm_s)
 {
 	seg->flags = (w->rapid ? INTERP_SEG_RAPID : 0) |
-		     (w->out ? INTERP_SEG_OUT : 0) |
-		     (w->least_s > 0 ? INTERP_SEG_KNOWN : 0) | w->ends;
+		     (w->out ? INTERP_SEG_OUT : 0) | w->ends;
 	seg->feed_max_mm_s = (float)feed_max_mm_s;
 	seg->feed_mm_s = w->rapid ? seg->feed_max_mm_s : (float)w->feed_mm_s;
 }
@@ -647,6 +646,14 @@ static inline int walk_together(struct interp_build *b,
 	       -ENOMEM : 0;
 }
 
+/* A part of a known way, as few lines are. */
+static void seg_known(struct interp_seg *seg, const struct interp_build_word *w)
+{
+	build_seg_feed(seg, w, smaller((double)seg->feed_max_mm_s,
+				       seg->length_mm / w->least_s));
+	seg->flags |= INTERP_SEG_KNOWN;
+}
+
 static inline struct interp_seg line_seg(const struct build_measure *m,
 					 const struct walked *walked,
 					 const struct interp_build_word *w)
@@ -656,8 +663,9 @@ static inline struct interp_seg line_seg(const struct build_measure *m,
 		.ticks = walked->ticks, .arg = walked->arg,
 	};
 
-	build_seg_feed(&seg, w,
-		       m->length_mm / larger(m->seconds, w->least_s));
+	build_seg_feed(&seg, w, m->length_mm / m->seconds);
+	if (w->least_s > 0)
+		seg_known(&seg, w);
 	if (!w->rapid)
 		seg.feed_mm_s *= (float)(m->length_mm / m->fed_mm);
 	return seg;

@@ -55,13 +55,14 @@ void pass_way_on(struct pass *w, uint32_t i, const struct heading *a,
 		 const struct heading *b)
 {
 	struct way_on *k = &w->gate.way;
-	struct way_bend to = {
-		.all = k->bend, .v_mm_s = smaller(k->most_mm_s, k->v_mm_s),
-	};
+	struct way_bend to;
 	struct bent *is = to.is;
 	double sum = 0;
 
+	to.all = k->bend;
+	to.v_mm_s = smaller(k->most_mm_s, k->v_mm_s);
 	for (uint32_t j = 0; j < w->n; j++) {
+		is[j] = (struct bent) { 0 };
 		if (!(a->along & b->along & 1u << j))
 			continue;
 		is[j].bend = fabs(b->rate[j] - a->rate[j]);
