@@ -62,43 +62,52 @@ static void level_j(struct interp_seg *segs, const struct run *k, uint32_t to)
 			segs[i].j_mm_s3 = k->least;
 }
 
-/* A node without a limit ends a run of them. */
-static void level_nodes(struct interp_seg *segs, uint32_t end)
+/* Does segment @i go on with these?  Nodes go on over what does not move. */
+static inline void node_on(struct interp_seg *segs, uint32_t i, struct run *k)
 {
-	struct run v = begin(0);
+	const float v = segs[i].node_mm_s;
 
-	for (uint32_t i = 0; i < end; i++) {
-		const float is = segs[i].node_mm_s;
+	/* A node without a limit ends a run of them. */
+	if (v < INFINITY && run_on(k, v))
+		return;
+	level_node(segs, k, i);
+	*k = (struct run) { i, v, v };
+}
 
-		if (is < INFINITY && run_on(&v, is))
-			continue;
-		level_node(segs, &v, i);
-		v = (struct run) { i, is, is };
-	}
-	level_node(segs, &v, end);
+static inline void a_on(struct interp_seg *segs, uint32_t i, struct run *k)
+{
+	const float a = segs[i].a_mm_s2;
+
+	if (run_on(k, a))
+		return;
+	level_a(segs, k, i);
+	*k = (struct run) { i, a, a };
+}
+
+static inline void j_on(struct interp_seg *segs, uint32_t i, struct run *k)
+{
+	const float j = segs[i].j_mm_s3;
+
+	if (run_on(k, j))
+		return;
+	level_j(segs, k, i);
+	*k = (struct run) { i, j, j };
 }
 
 void pass_levels(struct pass *w)
 {
 	struct interp_seg *segs = w->segs;
 	const uint32_t end = w->end + 1;
-	struct run a = begin(0), j = begin(0);
+	struct run a = begin(0), j = begin(0), v = begin(0);
 
 	for (uint32_t i = 0; i < end; i++) {
+		node_on(segs, i, &v);
 		if (segs[i].kind >= INTERP_BEGIN)
 			continue;
-		if (!run_on(&a, segs[i].a_mm_s2)) {
-			level_a(segs, &a, i);
-			a = (struct run) { i, segs[i].a_mm_s2,
-					   segs[i].a_mm_s2 };
-		}
-		if (!run_on(&j, segs[i].j_mm_s3)) {
-			level_j(segs, &j, i);
-			j = (struct run) { i, segs[i].j_mm_s3,
-					   segs[i].j_mm_s3 };
-		}
+		a_on(segs, i, &a);
+		j_on(segs, i, &j);
 	}
 	level_a(segs, &a, end);
 	level_j(segs, &j, end);
-	level_nodes(segs, end);
+	level_node(segs, &v, end);
 }
