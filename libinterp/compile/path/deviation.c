@@ -66,16 +66,21 @@ static double line_deviation(const struct interp_cursor *c,
 	return sqrt(r2);
 }
 
-/* The same for a line of two axes, as most are: without loops. */
+/* The same for a line of two axes, as most are: without loops, and without a
+ * root beside the line.  What the products of its lengths round is 1e-16 of
+ * them. */
 static double flat_deviation(const struct interp_cursor *c,
 			     const struct interp_deviation *d)
 {
 	const double a_mm = d->way[0].mm, b_mm = d->way[1].mm;
 	const double a = off_mm(c, &d->way[0]), b = off_mm(c, &d->way[1]);
-	const double t = foot(d, a_mm * a + b_mm * b);
-	const double ra = a - t * a_mm, rb = b - t * b_mm;
+	const double dr = a_mm * a + b_mm * b;
 
-	return sqrt(ra * ra + rb * rb);
+	if (dr <= 0)
+		return sqrt(a * a + b * b);
+	if (dr >= d->way2)
+		return sqrt((a - a_mm) * (a - a_mm) + (b - b_mm) * (b - b_mm));
+	return fabs(a * b_mm - b * a_mm) * d->per_mm;
 }
 
 /* An axis that stands where the line is adds nothing, so it is left out. */
@@ -95,6 +100,7 @@ static void set_line(const struct interp_cursor *c, uint32_t axes,
 		if (axes >> axis & 1 && (w.mm != 0 || off))
 			d->way[d->nways++] = w;
 	}
+	d->per_mm = 1 / sqrt(d->way2);
 	d->of = d->nways == 2 && d->way2 > 0 ? flat_deviation : line_deviation;
 }
 
@@ -146,41 +152,15 @@ static double helix_deviation(const struct interp_cursor *c,
 	return sqrt(arc_gap2(c, d->axes, (lo + hi) / 2));
 }
 
-/*
- * The root of a^2 + b^2, rounded as well as that of hypot(), which asks first
- * whether squares could overflow: no axis goes so far.  What the root of the
- * rounded squares is too large by is half of its square less theirs, over the
- * root; it is computed from the differences of the root and the side nearest to
- * half of it, which are exact (C. F. Borges, "Algorithm 1014: An improved
- * algorithm for hypot(x,y)", ACM TOMS 47(1), 2021).
- */
-static inline double root_of_squares(double a, double b)
-{
-	const double p = fabs(a), q = fabs(b);
-	const double large = p > q ? p : q, small = p > q ? q : p;
-	const double h = sqrt(p * p + q * q);
-	double more;
-
-	if (h <= 2 * small) {
-		const double over = h - small;
-
-		more = large * (2 * over - large) +
-		       (over - 2 * (large - small)) * over;
-	} else {
-		const double over = h - large;
-
-		more = 2 * over * (large - 2 * small) +
-		       ((4 * over - small) * small + over * over);
-	}
-	return h > 0 ? h - more / (2 * h) : 0;
-}
-
 /* By how much the point is outside the circle of the start. */
 static inline double outside(const struct interp_cursor *c,
 			     const struct interp_deviation *d)
 {
-	return root_of_squares(off_mm(c, &d->way[0]), off_mm(c, &d->way[1])) -
-	       d->arc.r_mm;
+	const double a = off_mm(c, &d->way[0]), b = off_mm(c, &d->way[1]);
+
+	/* hypot() would ask first whether squares overflow: no axis goes so
+	 * far. */
+	return sqrt(a * a + b * b) - d->arc.r_mm;
 }
 
 /* The distance from a circle, in its plane. */

@@ -299,7 +299,7 @@ struct interp_deviation {
 		uint32_t axis;
 		double pulse_mm, from_mm, mm;
 	} way[INTERP_NAXES];		/* of a line; or a, b of a circle */
-	double way2;			/* its length squared */
+	double way2, per_mm;		/* its length squared, and 1 / length */
 	struct interp_arc arc;		/* of a circle */
 	bool grows;			/* its radius with the place */
 };
