@@ -67,8 +67,8 @@ static inline void node_on(struct interp_seg *segs, uint32_t i, struct run *k)
 {
 	const float v = segs[i].node_mm_s;
 
-	/* A node without a limit ends a run of them. */
-	if (v < INFINITY && run_on(k, v))
+	/* Nodes without a limit, INFINITY, are a run of their own. */
+	if (run_on(k, v))
 		return;
 	level_node(segs, k, i);
 	*k = (struct run) { i, v, v };

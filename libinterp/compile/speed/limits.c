@@ -130,7 +130,7 @@ static float down(double most)
  * lines no axis moves alone, so that it is more than any can do. */
 static inline double own_level(const struct levels *own, double most)
 {
-	if (most > own->above)
+	if (most > own->above && most < INFINITY)
 		return 0;
 	for (uint32_t k = 0; k < own->n; k++)
 		if (fabs(most - own->at[k]) <= SAME * most)
