@@ -12,6 +12,7 @@
 #include "pulse/pulse.h"
 
 #include <math.h>
+#include <string.h>
 
 struct plane {
 	int32_t a, b;			/* pulses */
@@ -20,16 +21,16 @@ struct plane {
 /*
  * Ticks are computed in blocks.  sin and cos give the place of the middle of a
  * block once.  From there its ticks are turned by a series: a few products
- * instead of a call of libm.  16 ticks are less than 16 pulses along the arc.
- * So with a radius of 160 pulses the angle is below 0.1, and the first omitted
- * term is below 3e-15.  The middle depends only on the tick, so a point still
+ * instead of a call of libm.  32 ticks are less than 32 pulses along the arc.
+ * So with a radius of 160 pulses the angle is below 0.2, and the first omitted
+ * term is below 6e-16.  The middle depends only on the tick, so a point still
  * does, too.  All ticks of a block are computed in loops without a branch,
  * several at a time, and kept with the pulses between them: the walk goes to
  * and fro over them.
  */
 #define BLOCK		INTERP_ARC_BLOCK
 #define BLOCK_HALF	(BLOCK / 2)
-#define BLOCK_ANGLE	0.1
+#define BLOCK_ANGLE	0.2
 
 struct turn {
 	double cosine, sine;
@@ -42,9 +43,10 @@ static void block_turns(struct interp_cursor *c)
 		const double x = c->arc_turn * (i - BLOCK_HALF), x2 = x * x;
 
 		c->arc_sine[i] = x - x * x2 * (1.0 / 6 - x2 * (1.0 / 120 -
-						x2 * (1.0 / 5040)));
+				x2 * (1.0 / 5040 - x2 * (1.0 / 362880))));
 		c->arc_cosine[i] = 1 - x2 * (1.0 / 2 - x2 * (1.0 / 24 -
-				x2 * (1.0 / 720 - x2 * (1.0 / 40320))));
+				x2 * (1.0 / 720 - x2 * (1.0 / 40320 -
+				x2 * (1.0 / 3628800)))));
 	}
 }
 
@@ -53,16 +55,6 @@ static struct turn arc_direct(const struct interp_cursor *c, double tick)
 	const double theta = c->arc.theta + c->arc_turn * tick;
 
 	return (struct turn) { cos(theta), sin(theta) };
-}
-
-/* floor(x + 0.5), without a call or a branch.  A double above 2^52 has no room
- * for a fraction: what is added to it is rounded. */
-static inline double nearest(double x)
-{
-	const double large = 0x1.8p52, up = x + 0.5;
-	const double even = (up + large) - large;
-
-	return even - (even > up ? 1 : 0);
 }
 
 /* At both ends, the pulses of the node itself: they are exact, whatever sin and
@@ -82,53 +74,93 @@ static struct plane arc_node(const struct interp_cursor *c, bool at_end)
 	return p;
 }
 
+/*
+ * The integer nearest to @x, one of the two from halfway, without a call or a
+ * branch.  A double above 2^52 has no room for a fraction: what is added to it
+ * is rounded, and is in its low bits.
+ */
+static inline int32_t nearest(double x)
+{
+	const double rounded = x + 0x1.8p52;
+	uint64_t bits;
+
+	memcpy(&bits, &rounded, sizeof(bits));
+	return (int32_t)(uint32_t)bits;
+}
+
+/* One axis of a block, in pulses: the centre, and what the cosine and the sine
+ * of the turn from the middle add; of a spiral for 1 mm of radius. */
+struct side {
+	double centre, cosine, sine;
+};
+
+/* The lattice points of one axis.  The radius of a spiral is @r_mm in the
+ * middle, and @grow_mm more with each tick; that of an arc is in @k. */
+INLINE void block_side(const struct interp_cursor *c, struct side k,
+		       double r_mm, double grow_mm, int32_t *ret)
+{
+	for (int i = 0; i < BLOCK; i++) {
+		const double of = k.cosine * c->arc_cosine[i] +
+				  k.sine * c->arc_sine[i];
+		const double r = r_mm + grow_mm * (i - BLOCK_HALF);
+
+		ret[i] = nearest(k.centre + (grow_mm == 0 ? of : r * of));
+	}
+}
+
 /* The lattice points of the block that begins at tick @first. */
 static void block_points(struct interp_cursor *c, uint32_t first)
 {
 	const struct interp_arc *arc = &c->arc;
-	const struct turn middle = arc_direct(c, (double)first + BLOCK_HALF);
-	const double a_mm = arc->a_mm, b_mm = arc->b_mm, r_mm = arc->r_mm;
+	const double middle = (double)first + BLOCK_HALF;
 	const double grow_mm = c->arc_grow_mm;
+	const double r_mm = arc->r_mm + grow_mm * middle;
 	const double a_pulses_mm = c->pulses_mm[arc->axis_a];
 	const double b_pulses_mm = c->pulses_mm[arc->axis_b];
-	double a[BLOCK], b[BLOCK];
+	const double a_by = a_pulses_mm * (grow_mm == 0 ? r_mm : 1);
+	const double b_by = b_pulses_mm * (grow_mm == 0 ? r_mm : 1);
+	const struct turn to = arc_direct(c, middle);
+	const struct side a = {
+		arc->a_mm * a_pulses_mm, a_by * to.cosine, -a_by * to.sine
+	};
+	const struct side b = {
+		arc->b_mm * b_pulses_mm, b_by * to.sine, b_by * to.cosine
+	};
 
-	for (int i = 0; i < BLOCK; i++) {
-		const double r = r_mm + grow_mm * ((double)first + i);
-		const double along_a = middle.cosine * c->arc_cosine[i] -
-				       middle.sine * c->arc_sine[i];
-		const double along_b = middle.sine * c->arc_cosine[i] +
-				       middle.cosine * c->arc_sine[i];
+	if (grow_mm == 0) {
+		block_side(c, a, r_mm, 0, c->arc_at[0]);
+		block_side(c, b, r_mm, 0, c->arc_at[1]);
+	} else {
+		block_side(c, a, r_mm, grow_mm, c->arc_at[0]);
+		block_side(c, b, r_mm, grow_mm, c->arc_at[1]);
+	}
+}
 
-		a[i] = nearest((a_mm + r * along_a) * a_pulses_mm);
-		b[i] = nearest((b_mm + r * along_b) * b_pulses_mm);
-	}
-	for (int i = 0; i < BLOCK; i++) {
-		c->arc_at[0][i] = (int32_t)a[i];
-		c->arc_at[1][i] = (int32_t)b[i];
-	}
+/* Does the plane move by more than one pulse from tick @i to the next? */
+static bool jumps(const struct interp_cursor *c, uint32_t i)
+{
+	const int32_t *a = c->arc_at[0] + i, *b = c->arc_at[1] + i;
+
+	return (uint32_t)a[1] - (uint32_t)a[0] + 1 > 2 ||
+	       (uint32_t)b[1] - (uint32_t)b[0] + 1 > 2;
 }
 
 /* Nodes are where they are, and beyond the last one nothing moves. */
 static void block_ends(struct interp_cursor *c, uint32_t first)
 {
 	const struct plane from = arc_node(c, false), to = arc_node(c, true);
-	uint32_t i;
+	const uint32_t last = c->seg.ticks - first;
 
 	if (first == 0) {
 		c->arc_at[0][0] = from.a;
 		c->arc_at[1][0] = from.b;
 	}
-	for (i = c->seg.ticks - first; i < BLOCK; i++) {
+	for (uint32_t i = last; i < BLOCK; i++) {
 		c->arc_at[0][i] = to.a;
 		c->arc_at[1][i] = to.b;
 	}
-}
-
-/* Pulses of one axis of the plane; @d is -1, 0 or +1. */
-static inline uint32_t pulses_of(uint32_t d, uint32_t axis)
-{
-	return ((d & 1) | (d >> 31) << 8) << axis;
+	c->arc_broken = (first == 0 && jumps(c, 0)) ||
+			(last > 0 && last < BLOCK && jumps(c, last - 1));
 }
 
 /* From each of its ticks to the next, the pulses.  There is none behind the
@@ -137,7 +169,6 @@ static void block_pulses(struct interp_cursor *c)
 {
 	const uint32_t axis_a = c->arc.axis_a, axis_b = c->arc.axis_b;
 	int32_t *a = c->arc_at[0], *b = c->arc_at[1];
-	uint32_t broken = 0;
 
 	a[BLOCK] = a[BLOCK - 1];
 	b[BLOCK] = b[BLOCK - 1];
@@ -145,11 +176,9 @@ static void block_pulses(struct interp_cursor *c)
 		const uint32_t da = (uint32_t)a[i + 1] - (uint32_t)a[i];
 		const uint32_t db = (uint32_t)b[i + 1] - (uint32_t)b[i];
 
-		broken |= (da + 1 > 2) | (db + 1 > 2);
-		c->arc_pulse[i] = (uint16_t)(pulses_of(da, axis_a) |
-					     pulses_of(db, axis_b));
+		c->arc_pulse[i] = (uint16_t)(pulse_step(da, axis_a) |
+					     pulse_step(db, axis_b));
 	}
-	c->arc_broken = broken;
 }
 
 static void block_enter(struct interp_cursor *c, uint32_t block)
@@ -159,6 +188,7 @@ static void block_enter(struct interp_cursor *c, uint32_t block)
 	if (c->arc_block == UINT32_MAX)
 		block_turns(c);
 	block_points(c, first);
+	c->arc_broken = false;
 	if (first == 0 || c->seg.ticks - first < BLOCK)
 		block_ends(c, first);
 	block_pulses(c);
@@ -168,7 +198,7 @@ static void block_enter(struct interp_cursor *c, uint32_t block)
 /* The lattice point of @x, and a point in range where there is none. */
 static int32_t in_range(double x)
 {
-	return (int32_t)fmin(fmax(nearest(x), INT32_MIN), INT32_MAX);
+	return (int32_t)fmin(fmax(floor(x + 0.5), INT32_MIN), INT32_MAX);
 }
 
 static struct plane arc_alone(const struct interp_cursor *c, uint32_t tick)
@@ -250,14 +280,20 @@ static bool ticks_ok(const struct interp_cursor *c, uint32_t plane)
 	return c->seg.ticks > 0 && c->seg.ticks <= n * 1.00001 + 3;
 }
 
-/* Are there places that no int32_t holds?  Not in a sound program. */
-static bool is_far(const struct interp_arc *arc, const double *pulses_mm)
+/* Are there places that no int32_t holds, or ticks that are a pulse apart?  Not
+ * in a sound program; the builder has a margin of 1e-6. */
+static bool is_odd(const struct interp_cursor *c)
 {
+	const struct interp_arc *arc = &c->arc;
 	const double r_mm = fabs(arc->r_mm) + fabs(arc->dr_mm);
+	const double a = c->pulses_mm[arc->axis_a];
+	const double b = c->pulses_mm[arc->axis_b];
+	const double tick_mm = fabs(c->arc_turn) * fmax(arc->r_mm, arc->r_mm +
+			arc->dr_mm) + fabs(c->arc_grow_mm);
 
-	return (fabs(arc->a_mm) + r_mm) * pulses_mm[arc->axis_a] >=
-		       INT32_MAX ||
-	       (fabs(arc->b_mm) + r_mm) * pulses_mm[arc->axis_b] >= INT32_MAX;
+	return (fabs(arc->a_mm) + r_mm) * a >= INT32_MAX ||
+	       (fabs(arc->b_mm) + r_mm) * b >= INT32_MAX ||
+	       !(tick_mm * fmax(a, b) < 1 - 5e-7);
 }
 
 static bool arc_enter(struct interp_cursor *c, bool at_end)
@@ -272,7 +308,7 @@ static bool arc_enter(struct interp_cursor *c, bool at_end)
 	c->arc_turn = c->arc.sweep / c->seg.ticks;
 	c->arc_grow_mm = c->arc.dr_mm / c->seg.ticks;
 	c->arc_alone = fabs(c->arc_turn) * BLOCK_HALF > BLOCK_ANGLE ||
-		       is_far(&c->arc, c->pulses_mm);
+		       is_odd(c);
 	c->arc_block = UINT32_MAX;
 	return true;
 }
@@ -293,16 +329,16 @@ static uint32_t ticks_known(const struct interp_cursor *c, uint32_t tick,
 INLINE uint32_t points_known(const uint16_t *pulse, uint32_t n,
 			     const uint16_t *ret, uint16_t *to, bool back)
 {
-	uint32_t points = 0;
+	size_t points = 0;
 
-	for (uint32_t k = 0; k < n; k++) {
+	for (size_t k = 0; k < n; k++) {
 		const uint16_t plane = back ? pulse_turned(*pulse--) :
 					      *pulse++;
 
 		to[points] = ret[k] | plane;
 		points += to[points] != 0;
 	}
-	return points;
+	return (uint32_t)points;
 }
 
 static void plane_stand(struct interp_cursor *c, uint32_t tick)

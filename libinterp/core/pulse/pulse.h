@@ -171,16 +171,20 @@ INLINE void pulse_row(uint16_t *ret, uint32_t room, uint16_t pulse, uint32_t n)
 		ret[k] = pulse;
 }
 
+/** pulse_step() - that of one axis; @d is -1, which has all bits, 0 or +1. */
+static inline uint32_t pulse_step(uint32_t d, uint32_t axis)
+{
+	return (d & 0x101) << axis;
+}
+
 /**
  * pulse_plane_move() - the same for the plane of an arc; each is -1, 0 or +1.
  */
 static inline uint32_t pulse_plane_move(const struct interp_cursor *c,
 					int32_t da, int32_t db)
 {
-	return (((uint32_t)da & 1) | ((uint32_t)da >> 31) << 8)
-		       << c->arc.axis_a |
-	       (((uint32_t)db & 1) | ((uint32_t)db >> 31) << 8)
-		       << c->arc.axis_b;
+	return pulse_step((uint32_t)da, c->arc.axis_a) |
+	       pulse_step((uint32_t)db, c->arc.axis_b);
 }
 
 /** pulse_node() - node column @j at the start or end of c->seg, subpulses. */

@@ -130,7 +130,7 @@ struct interp_curve_walk {
 struct interp_walk;
 
 /* So many ticks of an arc are computed together. */
-#define INTERP_ARC_BLOCK	32
+#define INTERP_ARC_BLOCK	64
 
 /* The last pulse of a helix's circle and the others due behind it: see
  * pulse/tree.c. */
@@ -182,7 +182,7 @@ struct interp_cursor {
 	double arc_turn, arc_grow_mm;	/* angle, radius gained per tick */
 	uint32_t arc_block;		/* ticks whose places are known */
 	bool arc_alone;			/* each tick is computed for itself */
-	bool arc_broken;		/* there is a jump between two */
+	bool arc_broken;		/* a node is beside its place */
 	double arc_sine[INTERP_ARC_BLOCK];	/* from the middle of a block */
 	double arc_cosine[INTERP_ARC_BLOCK];
 	int32_t arc_at[2][INTERP_ARC_BLOCK + 1];	/* pulses of axis_a,
