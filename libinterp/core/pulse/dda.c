@@ -29,7 +29,7 @@
 #include <stdlib.h>
 
 #define DDA_SHIFT_MAX	28
-#define SPIN		16		/* ticks */
+#define SPIN		32		/* ticks */
 
 /* The program keeps the accumulators each time so many ticks are made, so that
  * no place of a long arc is farther than half of them from a known one. */
@@ -253,19 +253,6 @@ static bool dda_arc_enter(struct interp_cursor *c, bool at_end)
 	return rotor_in_range(k);
 }
 
-/* Pulses of an axis by the lowest two bits of what it moves: -1, 0 or +1. */
-struct moves {
-	uint16_t of[4];
-};
-
-static struct moves moves_of(uint32_t axis)
-{
-	return (struct moves) { {
-		[1] = (uint16_t)pulse_move(axis, false),
-		[3] = (uint16_t)pulse_move(axis, true),
-	} };
-}
-
 /* A row of ticks: the pulses of the other axes at @others, in its place. */
 struct row {
 	const uint16_t *others;
@@ -274,35 +261,70 @@ struct row {
 	bool back;
 };
 
+/* A rotor that turns: 1 << axis of its sums, and the way round.  To multiply
+ * takes less than to shift, as one shift is in the register for shifts. */
+struct turning {
+	struct sums s;
+	uint32_t shift, first, second;
+	int64_t ccw;
+};
+
+/* So far inside that no tick of some @ticks leaves the range. */
+INLINE bool is_inside(const struct turning *t, int64_t ticks)
+{
+	const int64_t most = (INT64_C(1) << t->shift) - ticks;
+	const int64_t x = t->s.first >> t->shift, y = t->s.second >> t->shift;
+
+	return most >= 0 && (uint64_t)(x + most) <= (uint64_t)(2 * most) &&
+	       (uint64_t)(y + most) <= (uint64_t)(2 * most);
+}
+
+/* @n ticks of @row from its @k on.  Return: the points in @to. */
+INLINE uint32_t some_ticks(struct turning *t, const struct row *row, uint32_t k,
+			   uint32_t n, uint16_t *to)
+{
+	struct sums s = t->s;
+	const uint32_t first = t->first, second = t->second, shift = t->shift;
+	int64_t x = s.first >> shift, y = s.second >> shift;
+	size_t points = 0;
+
+	for (size_t i = 0; i < n; i++) {
+		const int64_t was_x = x, was_y = y;
+
+		/* As sums_tick(), with what is known of the tick before. */
+		s.first -= t->ccw * y;
+		x = s.first >> shift;
+		s.second += t->ccw * x;
+		y = s.second >> shift;
+		to[points] = (uint16_t)(row->others[k + i] |
+			pulse_step((uint32_t)(x - was_x), 0) * first |
+			pulse_step((uint32_t)(y - was_y), 0) * second);
+		points += to[points] != 0;
+	}
+	t->s = s;
+	return (uint32_t)points;
+}
+
 /* Return: the points in row->to, or PULSE_BAD. */
 INLINE uint32_t turn(struct interp_cursor *c, const struct row *row,
 		     int64_t ccw)
 {
-	const struct moves a = moves_of(c->arc.axis_a);
-	const struct moves b = moves_of(c->arc.axis_b);
-	const struct moves first = row->back ? b : a;
-	const struct moves second = row->back ? a : b;
-	const uint32_t shift = c->rotor.shift;
-	const int64_t most = INT64_C(1) << shift;
-	struct sums s = sums_of(&c->rotor, row->back);
-	int64_t x = s.first >> shift, y = s.second >> shift;
-	uint32_t points = 0;
-	bool ok = true;
+	const uint32_t a = c->arc.axis_a, b = c->arc.axis_b;
+	struct turning t = {
+		sums_of(&c->rotor, row->back), c->rotor.shift,
+		1u << (row->back ? b : a), 1u << (row->back ? a : b), ccw,
+	};
+	uint32_t points = 0, n;
 
-	for (uint32_t k = 0; k < row->ticks; k++) {
-		const int64_t was_x = x, was_y = y;
-
-		sums_tick(&s, shift, ccw);
-		x = s.first >> shift;
-		y = s.second >> shift;
-		ok &= (uint64_t)(x + most) <= (uint64_t)(2 * most) &&
-		      (uint64_t)(y + most) <= (uint64_t)(2 * most);
-		row->to[points] = row->others[k] | first.of[(x - was_x) & 3] |
-				  second.of[(y - was_y) & 3];
-		points += row->to[points] != 0;
+	for (uint32_t k = 0; k < row->ticks; k += n) {
+		n = is_inside(&t, SPIN) ? pulse_fewer(row->ticks - k, SPIN) :
+					  1;
+		points += some_ticks(&t, row, k, n, row->to + points);
+		if (!is_inside(&t, 0))
+			return PULSE_BAD;
 	}
-	sums_keep(&s, &c->rotor, row->back);
-	return ok ? points : PULSE_BAD;
+	sums_keep(&t.s, &c->rotor, row->back);
+	return points;
 }
 
 static uint32_t arc_turn(struct interp_cursor *c, const struct row *row)
