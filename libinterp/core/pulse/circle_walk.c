@@ -206,28 +206,35 @@ static uint32_t quadrant_forward(struct interp_cursor *c, uint32_t most,
 	return n;
 }
 
-/* Until the quadrant or the aim.  Return: ticks; 0: at its border. */
+/*
+ * Until the quadrant or the aim.  Return: ticks; 0: at its border.  The last
+ * pulse was inward if dev <= 2 out - 2 in - 3; @over is dev less that, as then
+ * the next place is asked for by one sum.
+ */
 static uint32_t quadrant_back(struct interp_cursor *c, uint32_t most,
 			      uint16_t *ret)
 {
 	struct interp_circle *k = &c->circle;
 	struct quadrant q = quadrant_of(c);
-	int64_t dev = k->dev, measure = c->measure;
+	const uint16_t pulse[2] = {
+		pulse_turned(q.pulse[0]), pulse_turned(q.pulse[1])
+	};
+	int64_t over = k->dev - 2 * q.out + 2 * q.in + 3, measure = c->measure;
 	uint32_t n = 0;
 
 	while (n < most && q.out > 0) {
-		const bool inward = dev <= 2 * q.out - 2 * q.in - 3;
+		const bool inward = over <= 0;
 		const int64_t last = swept(inward ? q.out : q.in);
 
 		if (measure - last < c->want)
 			break;
 		measure -= last;
-		dev += (inward ? 2 * q.in : -2 * q.out) + 1;
+		over += (inward ? 2 * q.in : -2 * q.out) + 3;
 		q.in += inward;
 		q.out -= !inward;
-		ret[n++] = pulse_turned(q.pulse[inward]);
+		ret[n++] = pulse[inward];
 	}
-	k->dev = dev;
+	k->dev = over + 2 * q.out - 2 * q.in - 3;
 	c->measure = measure;
 	quadrant_keep(c, &q);
 	k->tick -= n;
