@@ -54,6 +54,10 @@ void config_entry_words(const struct machine_config *c,
 		say(&w, "; told again, because the PLC had not answered: M%u",
 		    interp_mcode_number(e->again));
 	say(&w, ", off the work; then it ");
+	if (e->far_mm <= e->from_mm && !e->next_line) {
+		say(&w, "moves no more");
+		return;
+	}
 	if (e->far_mm <= e->from_mm) {
 		say(&w, "goes on with line %u", e->next_line);
 		return;

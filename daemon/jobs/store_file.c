@@ -325,14 +325,24 @@ int store_file_make(const char *path, sqlite3 **ret)
 	return err;
 }
 
+/* If it cannot, the log has everything as before. */
+void store_file_fold(sqlite3 *db)
+{
+	sqlite3_wal_checkpoint_v2(db, NULL, SQLITE_CHECKPOINT_PASSIVE, NULL,
+				  NULL);
+}
+
 int store_file_open(struct store *s, sqlite3 **ret)
 {
 	int err = open_once(s, ret);
 
-	if (err != -EILSEQ)
-		return err;
-	err = store_mend(s);
-	return err < 0 ? err : open_once(s, ret);
+	if (err == -EILSEQ) {
+		err = store_mend(s);
+		err = err < 0 ? err : open_once(s, ret);
+	}
+	if (err == 0)
+		store_file_fold(*ret);
+	return err;
 }
 
 /* -- The copy in memory --------------------------------------------------- */

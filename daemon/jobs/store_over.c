@@ -53,6 +53,7 @@ int store_over_end(struct store *s)
 		return s->err;
 	}
 	sqlite3_exec(s->db, "PRAGMA cache_spill=ON", NULL, NULL, NULL);
+	store_file_fold(s->db);
 	sqlite3_busy_timeout(s->db, STORE_BUSY_MS);
 	s->over = false;
 	s->spared = 0;

@@ -170,6 +170,10 @@ void store_writes_free(struct store_writes *w);
 /** store_file_open() - open, mend, bring up to date.  Return: 0 or -errno. */
 int store_file_open(struct store *s, sqlite3 **ret);
 
+/** store_file_fold() - put what the log has into the file, so that the log
+ *  begins anew: who was killed, or had no room, has left a long one. */
+void store_file_fold(sqlite3 *db);
+
 /** store_file_make() - a new, empty one at @path.  Return: 0 or -errno. */
 int store_file_make(const char *path, sqlite3 **ret);
 

@@ -2,9 +2,11 @@
 """A program begins inside an orbit, a macro or a pass of the wire: behind the way
 in its points are those of the whole program."""
 
+import subprocess
+
 import pytest
 
-from edmsim import ROOT, pulses, report, run
+from edmsim import PROGRAM, ROOT, pulses, report, run
 
 MACHINE = ROOT / "examples/machine.ini"
 WIRE = ROOT / "examples/wire.ini"
@@ -101,3 +103,11 @@ def test_a_call_is_no_line_that_moves():
             "--from-line", 16, text=MACRO)
     assert r.returncode == 65
     assert b"nothing moves in line 16 or behind it; a line up to 13" in r.stderr
+
+
+def test_behind_the_last_positioning_nothing_is_left_to_move():
+    said = subprocess.run(
+        [PROGRAM, "--machine", MACHINE, "--check", "--from-place", "2.5", "-"],
+        input=b"G21 G90 F60\nG1 X2\nG0 X3\nM2\n", capture_output=True,
+        check=True).stderr
+    assert b"then it moves no more" in said

@@ -585,6 +585,56 @@ static void a_disk_that_is_full_again_loses_nothing(void **state)
 	store_close(s);
 }
 
+static int64_t log_bytes(void)
+{
+	char path[200];
+	struct stat st;
+
+	snprintf(path, sizeof(path), "%s/m.db-wal", dir);
+	assert_int_equal(stat(path, &st), 0);
+	return st.st_size;
+}
+
+/* Else the log of a full disk would take the room that there is again. */
+static void where_there_is_room_again_the_log_begins_anew(void **state)
+{
+	struct store *s = open_store();
+	int64_t bytes;
+
+	(void)state;
+	alarms(s, 0, 20);
+	disk_fails(SQLITE_FULL);
+	alarms(s, 20, 1);
+	disk.fail_from = -1;
+	assert_true(store_tick(s, 90000000));
+	bytes = log_bytes();
+	alarms(s, 21, 20);
+	assert_int_equal(log_bytes(), bytes);
+	assert_int_equal(alarms_on_disk(), 41);
+	store_close(s);
+}
+
+static void the_log_of_one_that_was_killed_begins_anew(void **state)
+{
+	const pid_t pid = fork();
+	int64_t bytes;
+	int status;
+	struct store *s;
+
+	(void)state;
+	if (pid == 0) {
+		alarms(open_store(), 0, 20);
+		_exit(0);
+	}
+	assert_int_equal(waitpid(pid, &status, 0), pid);
+	s = open_store();
+	bytes = log_bytes();
+	alarms(s, 20, 20);
+	assert_int_equal(log_bytes(), bytes);
+	assert_int_equal(alarms_on_disk(), 40);
+	store_close(s);
+}
+
 /* Then nobody knows of the job until it can be read again. */
 static void a_full_disk_that_cannot_be_read_in_the_end_loses_nothing(
 	void **state)
@@ -1360,6 +1410,8 @@ int main(void)
 		T(many_events_of_a_copy_are_counted_and_left_out),
 		T(what_is_written_over_a_full_disk_is_seen_by_us_alone),
 		T(a_disk_that_is_full_again_loses_nothing),
+		T(where_there_is_room_again_the_log_begins_anew),
+		T(the_log_of_one_that_was_killed_begins_anew),
 		T(a_full_disk_that_cannot_be_read_in_the_end_loses_nothing),
 		T(a_disk_that_is_full_from_the_start_is_not_called_read_only),
 		T(what_was_kept_comes_in_pieces_and_at_once),

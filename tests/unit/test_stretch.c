@@ -180,6 +180,24 @@ static void a_turn_alone_is_not_as_soft_as_a_line_beside_it(void **st)
 	assert_true(s[1] < most_s);
 }
 
+/* Beside both neighbours of the second line C turns, by 10 and by 200 degrees a
+ * mm, and can do little: 4.6 s.  As soft as a turn by the mean of both sides,
+ * the second line alone would take 9 s. */
+static void a_line_between_turns_is_not_as_soft_as_they(void **st)
+{
+	struct interp_build *b = begin_plain();
+	double s[2];
+
+	(void)st;
+	axes_machine.axis[INTERP_C].a_max_mm_s2 = 5;
+	to(b, -1, -10);
+	to(b, 0, -10);
+	to(b, -0.02, -6);
+	walk(finish(b), s);
+	assert_true(s[0] < 5);
+	assert_true(s[1] < 5);
+}
+
 static uint32_t stands_of(const struct made *m)
 {
 	uint32_t n = 0;
@@ -309,6 +327,7 @@ int main(void)
 		cmocka_unit_test(on_next_to_no_way_it_turns_one_way),
 		cmocka_unit_test(nearer_and_nearer_to_a_pole_it_comes_past),
 		cmocka_unit_test(a_turn_alone_is_not_as_soft_as_a_line_beside_it),
+		cmocka_unit_test(a_line_between_turns_is_not_as_soft_as_they),
 		cmocka_unit_test(what_is_soft_again_and_again_is_one_move),
 		cmocka_unit_test(between_slow_nodes_it_stands_where_that_is_quicker),
 		cmocka_unit_test(a_circle_of_little_jerk_is_as_fast_as_its_bend),

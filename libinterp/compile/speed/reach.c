@@ -63,12 +63,16 @@ static float *reach(const struct pass *w)
 	return v2;
 }
 
+/* On a segment that is not short each column goes as it is written: it bends at
+ * the node, not beside it. */
 static void soften_by(struct pass *w, const struct bent_node *b, double v_mm_s)
 {
 	struct leave left;
 
 	pass_leave(w, b, v_mm_s, &left);
-	pass_soften_segs(w, b->before, b->behind, &left);
+	for (uint32_t i = b->before; i <= b->behind; i++)
+		if (pass_is_short(w, i))
+			pass_soften_segs(w, i, i, &left);
 }
 
 /* How many of the first of @n begin at the same place; and where the last of
