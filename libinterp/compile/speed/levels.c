@@ -48,11 +48,18 @@ static void level_a(struct interp_seg *segs, const struct run *k, uint32_t to)
 			segs[i].a_mm_s2 = k->least;
 }
 
+/* Is the node behind segment @s slower than what is beside it? */
+static inline bool limits(const struct interp_seg *s)
+{
+	return s->node_mm_s < pass_least(s->feed_max_mm_s, s[1].feed_max_mm_s);
+}
+
 static void level_node(struct interp_seg *segs, const struct run *k,
 		       uint32_t to)
 {
 	for (uint32_t i = k->from; i < to && k->most > k->least; i++)
-		segs[i].node_mm_s = k->least;
+		if (limits(&segs[i]))
+			segs[i].node_mm_s = k->least;
 }
 
 static void level_j(struct interp_seg *segs, const struct run *k, uint32_t to)
@@ -62,18 +69,23 @@ static void level_j(struct interp_seg *segs, const struct run *k, uint32_t to)
 			segs[i].j_mm_s3 = k->least;
 }
 
-/* A node without a limit ends a run of them. */
+/* A node without a limit ends a run of them, and so does one that is too fast
+ * for it.  One that its segments do not reach is none of the run: a long
+ * plateau would sink to where it ends. */
 static void level_nodes(struct interp_seg *segs, uint32_t end)
 {
 	struct run v = begin(0);
 
 	for (uint32_t i = 0; i < end; i++) {
 		const float is = segs[i].node_mm_s;
+		const bool counts = is < INFINITY && limits(&segs[i]);
 
-		if (is < INFINITY && run_on(&v, is))
+		if (counts ? run_on(&v, is) : is <= STEP * v.least)
 			continue;
 		level_node(segs, &v, i);
-		v = (struct run) { i, is, is };
+		v = begin(i);
+		if (counts)
+			run_on(&v, is);
 	}
 	level_node(segs, &v, end);
 }
