@@ -348,7 +348,7 @@ def test_from_a_pole_it_goes_in_any_direction(tmp_path, off):
                       "C(0 0 -120) X Y Z B(0 0 10)").replace(
         "[axis.B]\npresent = no", "[axis.B]\nv_max_mm_s = 30")
     (tmp_path / "m.ini").write_text(ini)
-    r = run("--dry-run", "--limit-s", "200", "--machine",
+    r = run("--dry-run", "--limit-s", "60", "--machine",
             tmp_path / "m.ini", text="G43.5\nF6000\nG1 X0 Y0 Z0 I0 J0 K1\n"
             f"G1 X-10 Y0 I-0.3 J{off} K1\nG1 X10 Y0 I0.3 J{off} K1\nG49\n"
             "M2\n")

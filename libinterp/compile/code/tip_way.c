@@ -202,61 +202,128 @@ static int cut_piece(struct nc_reader *r, const struct nc_tip_way *w,
 	return 0;
 }
 
-/* Places at which the axes are looked at to see how they bend: half a piece
- * apart, from one piece before it to one behind it. */
-#define BENDS		7
+/* The axes are looked at over so many parts of the way, to see how they bend:
+ * each is half a piece, from one piece before it to one behind it. */
+#define PARTS		6
 
-/* How far it is from place to place, as the path counts it. */
-static double way_mm(const double *a, const double *b)
+/* A piece is straight, whatever bends in so small a part of it. */
+#define PART_LEAST	8
+
+struct part {
+	double mm;			/* of path; 0: the way has ended */
+	double rate[INTERP_NAXES];	/* of each axis, in a mm */
+};
+
+/* As the path counts it. */
+static struct part part_of(const double *a, const double *b)
 {
 	const double xyz = span(a, b, INTERP_X, 3);
 	const double abc = span(a, b, INTERP_A, 3);
+	struct part ret = { .mm = build_counts(xyz * xyz, abc * abc) ?
+				  xyz : abc };
 
-	return build_counts(xyz * xyz, abc * abc) ? xyz : abc;
+	for (int i = 0; i < INTERP_NAXES && ret.mm > 0; i++)
+		ret.rate[i] = (b[i] - a[i]) / ret.mm;
+	return ret;
 }
 
-/* The speed along the path at which axes beside it can follow their bend over
- * three places: the rate of each changes there, per mm of path. */
-static double follows_mm_s(const struct nc_reader *r,
-			   double q[3][INTERP_NAXES])
+/* Between a part and the next one the rate of an axis changes in a mm by: */
+static double bend_of(const struct part *k, int axis)
 {
-	const double mm[2] = { way_mm(q[0], q[1]), way_mm(q[1], q[2]) };
-	double v2 = INFINITY;
+	return (k[1].rate[axis] - k[0].rate[axis]) * 2 / (k[0].mm + k[1].mm);
+}
 
-	if (!(mm[0] > 0 && mm[1] > 0))
+/* The acceleration and jerk along the path that all axes can follow there, if
+ * nothing bends. */
+struct own {
+	double a_mm_s2, j_mm_s3;
+};
+
+static struct own own_of(const struct interp_machine *m, const struct part *k)
+{
+	struct own own = { INFINITY, INFINITY };
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const double rate = fabs(k[0].rate[i] + k[1].rate[i]) / 2;
+
+		own.a_mm_s2 = fmin(own.a_mm_s2, m->axis[i].a_max_mm_s2 / rate);
+		own.j_mm_s3 = fmin(own.j_mm_s3, m->axis[i].j_max_mm_s3 / rate);
+	}
+	return own;
+}
+
+/* The speed at which an axis beside the path can follow its bend, and speed up
+ * on it. */
+static double follows_mm_s(const struct interp_axis_limits *l,
+			   const struct part *k, int axis,
+			   const struct own *own)
+{
+	const double bend = fabs(bend_of(k, axis));
+	const double rate = fabs(k[0].rate[axis] + k[1].rate[axis]) / 2;
+	const double along = rate * own->a_mm_s2 * INTERP_LEAST_ALONG;
+	const double jerk = INTERP_ARC_JERK_BOTH * l->j_max_mm_s3;
+	const double on = jerk / (3 * bend * INTERP_LEAST_ALONG);
+
+	return fmin(sqrt((l->a_max_mm_s2 - along) / bend),
+		    fmax(on / own->a_mm_s2, cbrt(on * on / own->j_mm_s3)));
+}
+
+static double bend_mm_s(const struct interp_machine *m, const struct part *k,
+			double least_mm)
+{
+	const struct own own = own_of(m, k);
+	double v = INFINITY;
+
+	if (!(k[0].mm > least_mm && k[1].mm > least_mm))
+		return INFINITY;
+	for (int i = INTERP_A; i < INTERP_NAXES; i++)
+		v = fmin(v, follows_mm_s(&m->axis[i], k, i, &own));
+	return v;
+}
+
+/* The same by how their bend changes over three parts. */
+static double change_mm_s(const struct interp_machine *m, const struct part *k,
+			  double least_mm)
+{
+	double v = INFINITY;
+
+	if (!(k[0].mm > least_mm && k[1].mm > least_mm && k[2].mm > least_mm))
 		return INFINITY;
 	for (int i = INTERP_A; i < INTERP_NAXES; i++) {
-		const double before = (q[1][i] - q[0][i]) / mm[0];
-		const double behind = (q[2][i] - q[1][i]) / mm[1];
-		const double bend = fabs(behind - before) * 2 /
-				    (mm[0] + mm[1]);
+		const double change = fabs(bend_of(k + 1, i) - bend_of(k, i)) /
+				      k[1].mm;
 
-		if (bend > 0)
-			v2 = fmin(v2, INTERP_BESIDE_ACROSS *
-				  r->o->machine->axis[i].a_max_mm_s2 / bend);
+		v = fmin(v, cbrt(INTERP_BESIDE_JERK_ROUND *
+				 m->axis[i].j_max_mm_s3 / change));
 	}
-	return sqrt(v2);
+	return v;
 }
 
 /* The time that a piece takes at least.  Here the way is known, while limits
  * that are found of lines afterwards cannot tell the bends of very short ones
- * from roundings.  Beside a bend it goes no faster, because what it needs to
- * speed up is wanted for the bend. */
+ * from roundings. */
 static int least_s(const struct nc_reader *r, const struct nc_tip_way *w,
 		   const struct piece *p, double *ret)
 {
+	const struct interp_machine *m = r->o->machine;
 	const double half = (p->t1 - p->t0) / 2;
-	double q[BENDS][INTERP_NAXES], v = INFINITY;
+	const double mm = part_of(p->q0, p->q1).mm;
+	double at[2][INTERP_NAXES], v = INFINITY;
+	struct part k[PARTS];
 
-	for (int n = 0; n < BENDS; n++) {
+	for (int n = 0; n <= PARTS; n++) {
 		const double t = p->t0 + (n - 2) * half;
 
-		if (axes_at(r, w, fmax(0, fmin(1, t)), q[n]))
+		if (axes_at(r, w, fmax(0, fmin(1, t)), at[n % 2]))
 			return -EDOM;
+		if (n > 0)
+			k[n - 1] = part_of(at[(n - 1) % 2], at[n % 2]);
 	}
-	for (int n = 0; n + 2 < BENDS; n++)
-		v = fmin(v, follows_mm_s(r, q + n));
-	*ret = way_mm(p->q0, p->q1) / v;
+	for (int n = 0; n + 1 < PARTS; n++)
+		v = fmin(v, bend_mm_s(m, k + n, mm / PART_LEAST));
+	for (int n = 0; n + 2 < PARTS; n++)
+		v = fmin(v, change_mm_s(m, k + n, mm / PART_LEAST));
+	*ret = mm / v;
 	return 0;
 }
 

@@ -14,16 +14,8 @@
  */
 #include "speed/pass.h"
 
-/* Of the acceleration along the path, what a bend leaves at least.  One that
- * would need more is followed slower.  More of it makes short moves quicker,
- * such as jumps, and long ones slower. */
-#define LEAST_ALONG	0.525
-
-/* Of its jerk, what a bend may take and is not looked for. */
-#define HARDLY		0.1
-
 /* Of its jerk, how much counts that a change of its bend takes.  Roundings are
- * left out (dip.c), so it may be more than PASS_BESIDE_SHARE. */
+ * left out (dip.c), so it may be more than INTERP_BESIDE_JERK_ROUND. */
 #define CHANGE_MOST	0.65
 
 /* What is left of its jerk at least, if a move needs as much along the path. */
@@ -137,14 +129,6 @@ static struct bend_change bend_change(struct pass *w, const struct look *l,
 	return ret;
 }
 
-/* The acceleration along the path, of which a bend at the node may take a
- * share. */
-static double own_mm_s2(const struct pass *w)
-{
-	return smaller(w->a_linear_mm_s2, smaller(w->a_own_mm_s2[0],
-						  w->a_own_mm_s2[1]));
-}
-
 /* A bend, the same less another rounding, and how it changes. */
 struct is_bent {
 	double bend, less, change;
@@ -180,9 +164,9 @@ static void show_change(struct bent *b, const struct look *l, double change)
 static void note_change(struct pass *w, const struct look *l, uint32_t j,
 			double change)
 {
-	const double v = l->most_mm_s;
+	const double v = l->most_mm_s, jerk = w->j_mm_s3[j];
 
-	if (!l->certain || change * v * v * v <= HARDLY * w->j_mm_s3[j])
+	if (!l->certain || change * v * v * v <= PASS_HARDLY_JERK * jerk)
 		return;
 	show_change(noted(w, l, j), l, change);
 }
@@ -191,7 +175,7 @@ static void note_change(struct pass *w, const struct look *l, uint32_t j,
 static void note_bent(struct pass *w, const struct look *l, uint32_t j,
 		      const struct is_bent *is)
 {
-	const double v = l->most_mm_s, own = own_mm_s2(w);
+	const double v = l->most_mm_s, own = pass_own_mm_s2(w);
 	struct bent *b;
 
 	if (!l->certain ||
@@ -208,15 +192,16 @@ static void note_bent(struct pass *w, const struct look *l, uint32_t j,
 }
 
 /* What its bend may take.  What a move needs along the path may point the same
- * way, and it has LEAST_ALONG. */
+ * way, and it has INTERP_LEAST_ALONG. */
 static double for_bend_mm_s2(const struct pass *w, const struct look *l,
 			     uint32_t j)
 {
 	const double a = w->a_mm_s2[j];
 	const double rate = larger(fabs(l->bow.a->rate[j]),
 				   fabs(l->bow.b->rate[j]));
+	const double along = smaller(rate * pass_own_mm_s2(w) / a, 1);
 
-	return a * (1 - LEAST_ALONG * smaller(rate * own_mm_s2(w) / a, 1));
+	return a * (1 - INTERP_LEAST_ALONG * along);
 }
 
 /* cbrt(INTERP_ARC_JERK_ROUND) */
@@ -229,7 +214,7 @@ static double round_mm_s(const struct pass *w, uint32_t j, double change,
 			 double at, double alone_mm_s)
 {
 	const double jerk = w->j_mm_s3[j], v = cbrt(jerk / change);
-	const double share = cbrt(PASS_BESIDE_SHARE * jerk /
+	const double share = cbrt(INTERP_BESIDE_JERK_ROUND * jerk /
 				  smaller(at, change));
 
 	if (!(change < INFINITY))
@@ -253,7 +238,8 @@ static double on_mm_s(const struct pass *w, uint32_t j, double a_mm_s2,
 		      double bend)
 {
 	const double set_off = INTERP_ARC_JERK_BOTH * w->j_mm_s3[j] /
-			       (3 * bend * LEAST_ALONG * own_mm_s2(w));
+			       (3 * bend * INTERP_LEAST_ALONG *
+				pass_own_mm_s2(w));
 
 	return smaller(set_off, sqrt(a_mm_s2 / bend));
 }
@@ -275,7 +261,7 @@ void pass_beside(struct pass *w, struct look *l, uint32_t j, double d,
 	bool goes_on;
 
 	if (most * most * is.bend <= a &&
-	    most * most * most * is.bend <= HARDLY * jerk * mm) {
+	    most * most * most * is.bend <= PASS_HARDLY_JERK * jerk * mm) {
 		note_bent(w, l, j, &is);
 		return;
 	}
@@ -328,9 +314,10 @@ static double square_mm_s2(const struct bent_node *k, double a, double v)
 void pass_leave(const struct pass *w, const struct bent_node *k, double v_mm_s,
 		struct leave *ret)
 {
-	const double v = v_mm_s, least = LEAST_ALONG * (double)k->own_mm_s2;
+	const double least = INTERP_LEAST_ALONG * (double)k->own_mm_s2;
 	const double jerk = w->j_mm_s3[k->column], a = w->a_mm_s2[k->column];
 	const struct bent *b = &k->is;
+	const double v = v_mm_s;
 	const double across = smaller(b->bend * v * v / a, 1);
 	const double round = change_share(b, v * v * v, jerk);
 	const double along = smaller(JERK_ALONG,
@@ -355,12 +342,16 @@ void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind)
 {
 	const float a = w->segs[before].j_mm_s3, b = w->segs[behind].j_mm_s3;
 	const float own_mm_s3 = a < b ? a : b;
+	const double own = pass_is_known(w, before, behind) ?
+			   pass_known_own(w, before, behind) :
+			   pass_own_mm_s2(w);
+
 
 	for (uint32_t j = 0; j < w->n; j++)
 		if (w->bends >> j & 1)
 			pass_bent_node(w, &(struct bent_node) {
 				w->bent[j], j, before, behind,
-				(float)own_mm_s2(w), own_mm_s3, INFINITY, 0,
+				(float)own, own_mm_s3, INFINITY, 0,
 				{ 0, 0 },
 			});
 }

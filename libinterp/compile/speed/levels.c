@@ -51,7 +51,8 @@ static void level_a(struct interp_seg *segs, const struct run *k, uint32_t to)
 /* Is the node behind segment @s slower than what is beside it? */
 static inline bool limits(const struct interp_seg *s)
 {
-	return s->node_mm_s < pass_least(s->feed_max_mm_s, s[1].feed_max_mm_s);
+	return s->node_mm_s < s->feed_max_mm_s &&
+	       s->node_mm_s < s[1].feed_max_mm_s;
 }
 
 static void level_node(struct interp_seg *segs, const struct run *k,
@@ -98,12 +99,8 @@ static inline void j_on(struct interp_seg *segs, uint32_t i, struct run *k)
 static inline void node_on(struct interp_seg *segs, uint32_t i, struct run *k)
 {
 	const float v = segs[i].node_mm_s;
-	bool counts;
+	const bool counts = limits(&segs[i]);
 
-	/* Mostly it is between those before. */
-	if (v >= k->least && v <= k->most)
-		return;
-	counts = limits(&segs[i]);
 	if (counts ? run_on(k, v) : v <= STEP * k->least)
 		return;
 	level_node(segs, k, i);

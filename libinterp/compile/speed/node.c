@@ -508,8 +508,8 @@ static void limit_top(const struct pass *w, const struct chord *c,
 	}
 	if (bend > 0)
 		ret->v_mm_s = smaller(ret->v_mm_s,
-				      cbrt(PASS_BESIDE_SHARE * w->j_mm_s3[j] /
-					   bend));
+				      cbrt(INTERP_BESIDE_JERK_ROUND *
+					   w->j_mm_s3[j] / bend));
 }
 
 /*

@@ -163,10 +163,6 @@ struct dip {
 /* What it may take of the jerk. */
 #define PASS_CHANGE_SHARE	0.7
 
-/* The same of an axis beside the path, if that is no corner; so much may the
- * top of a peak of its rate take, too.  The rest is for going along. */
-#define PASS_BESIDE_SHARE	0.5
-
 /* How the bend of the path changes, as one window shows it; that is moved on by
  * its own length. */
 struct changing {
@@ -208,6 +204,8 @@ struct way_on {
 /* Of its acceleration, what a bend of the path may take and is not looked
  * for. */
 #define PASS_HARDLY	0.1
+/* The same of the jerk, of an axis beside the path. */
+#define PASS_HARDLY_JERK	0.1
 
 /* When that has to be asked, and what is known until then. */
 struct change_gate {
@@ -405,6 +403,33 @@ void pass_chord(const struct pass *w, uint32_t from, uint32_t to,
  */
 void pass_beside(struct pass *w, struct look *l, uint32_t j, double d,
 		 double less);
+
+/** pass_own_mm_s2() - the acceleration along the path, of which a bend at the
+ *  node may take a share. */
+static inline double pass_own_mm_s2(const struct pass *w)
+{
+	return smaller(w->a_linear_mm_s2, smaller(w->a_own_mm_s2[0],
+						  w->a_own_mm_s2[1]));
+}
+
+/** pass_is_known() - are both of these segments parts of one known way? */
+static inline bool pass_is_known(const struct pass *w, uint32_t a, uint32_t b)
+{
+	const struct interp_seg *s = w->segs;
+
+	return s[a].flags & s[b].flags & INTERP_SEG_KNOWN &&
+	       s[a].line == s[b].line;
+}
+
+/** pass_known() - note how the columns that are not @along bend at the node in
+ *  front of segment @i, between two parts of a known way. */
+void pass_known(struct pass *w, uint32_t i, uint32_t along);
+
+/** pass_known_own() - the acceleration along the path that a move can have
+ *  between these parts of a known way: from a stand to their speed none comes
+ *  to more. */
+double pass_known_own(const struct pass *w, uint32_t before,
+		      uint32_t behind);
 
 /** pass_leave() - what a bend leaves, if its node is passed at @v_mm_s at
  *  most. */

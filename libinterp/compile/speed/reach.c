@@ -36,6 +36,9 @@ static float over_mm_s(const struct pass *w, uint32_t k)
 /* The square of a speed, after segment @s from another one. */
 static inline float from(const struct interp_seg *s, float v2, float other)
 {
+	/* Mostly there is nothing to speed up for. */
+	if (v2 <= other)
+		return v2;
 	return pass_least(v2, moves(s) ? other + 2 * (float)s->length_mm *
 						 s->a_mm_s2 : other);
 }

@@ -68,6 +68,16 @@
 /* Of an axis beside the path they point one way. */
 #define INTERP_BESIDE_ACROSS	0.6
 #define INTERP_BESIDE_ALONG	0.4
+/* The same of its jerk: what the change of a bend may take, if that is no
+ * corner.  The rest is for going along. */
+#define INTERP_BESIDE_JERK_ROUND	0.5
+
+/*
+ * Beside lines, the bend of an axis leaves at least so much of the acceleration
+ * along the path.  One that would need more is followed slower.  More of it
+ * makes short moves quicker, such as jumps, and long ones slower.
+ */
+#define INTERP_LEAST_ALONG	0.525
 
 /*
  * The same of its jerk, which has three parts: of the bend itself, v^3 / r^2;

@@ -136,8 +136,8 @@ enum interp_aux {
 /* Behind M5: written as a cut, and positioned. */
 #define INTERP_SEG_OFF		0x40
 
-/* A part of a known way: its feed_max_mm_s is what its axes can follow there.
- * What lines near to it show is not better. */
+/* A part of a known way: its feed_max_mm_s is what its axes can follow there,
+ * and its ends are on the way.  What lines near to it show is not better. */
 #define INTERP_SEG_KNOWN	0x80
 
 /* Any of these: nothing is cut on it. */
