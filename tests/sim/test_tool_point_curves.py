@@ -277,3 +277,22 @@ def test_too_many_pieces_are_refused_with_the_remedy(machine):
     assert p.returncode == 65, said
     assert ":4:" in said and "more than 100000 pieces" in said
     assert "kinematics.tolerance_um" in said
+
+
+TURNS_BACK = {
+    "and tilts": "X20 Y2 Z-60 Q1 I0.1 J0.1",
+    "a little beside its way": "X20 Y2.0001 Z-60 Q1 I0.1 J0.1",
+    "going down": "X30 Y0 Z-62 Q1 I0.2",
+    "while the tip stands": "X30 Y0 Z-60 Q1 I0.2 J0.1",
+}
+
+
+@pytest.mark.parametrize("there", TURNS_BACK.values(), ids=TURNS_BACK)
+def test_a_body_that_turns_back_within_one_way_ends(there):
+    """Where all axes turn back, the mean of their rates is nothing."""
+    text = ("G90 G43.4 F4800\nG0 X30 Y0 Z-60\n"
+            "G6.3 L3 P0 R1 X30 Y0 Z-60 Q1\n"
+            f"P0 R1 {there}\nP0 R1 X30 Y0 Z-60 Q1\nP1\nP1\nP1\nM2\n")
+    r = report("--dry-run", "--limit-s", "60", "--machine",
+               ROOT / "examples/machine-five-axis.ini", text=text)
+    assert r["outcome"] == "done" and r["virtual_s"] < 6

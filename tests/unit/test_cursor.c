@@ -347,6 +347,36 @@ static void a_damaged_block_never_leads_astray(void **st)
 	}
 }
 
+/* All that it says of its pulses is where it is, also from inside. */
+static void an_arc_of_a_negative_radius_says_each_pulse(void **st)
+{
+	const double end[INTERP_NAXES] = { 0, 0, 2 };
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	uint16_t pulses[20];
+	struct interp_cursor c;
+	uint32_t n;
+	int32_t at[2];
+	struct made m;
+
+	(void)st;
+	arc(b, end, -0.1, 0, false);
+	m = finish(b);
+	((struct interp_arc *)m.p.arcs)->r_mm = -1;
+	if (interp_cursor_init(&c, &m.p) == 0 &&
+	    interp_cursor_seek(&c, 1, 1001) == 0) {
+		memcpy(at, c.pos, sizeof(at));
+		interp_cursor_aim(&c, 1e9);
+		n = interp_cursor_run(&c, pulses, 20);
+		for (uint32_t i = 0; i < n && n <= 20; i++)
+			for (int a = 0; a < 2; a++)
+				at[a] += !(pulses[i] >> a & 1) ? 0 :
+					 pulses[i] >> (a + 8) & 1 ? -1 : 1;
+		if (n <= 20)
+			assert_memory_equal(at, c.pos, sizeof(at));
+	}
+	unmake(&m);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -360,6 +390,7 @@ int main(void)
 		cmocka_unit_test(point_by_point_points_are_near_the_path),
 		cmocka_unit_test(a_place_can_be_sought),
 		cmocka_unit_test(a_damaged_block_never_leads_astray),
+		cmocka_unit_test(an_arc_of_a_negative_radius_says_each_pulse),
 	};
 
 	return cmocka_run_group_tests_name("interp/cursor", tests, NULL, NULL);

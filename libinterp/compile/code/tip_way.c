@@ -233,6 +233,13 @@ static double bend_of(const struct part *k, int axis)
 	return (k[1].rate[axis] - k[0].rate[axis]) * 2 / (k[0].mm + k[1].mm);
 }
 
+/* How much of the path an axis takes there.  Where it turns back it is not that
+ * little as the mean of both sides. */
+static double rate_of(const struct part *k, int axis)
+{
+	return (fabs(k[0].rate[axis]) + fabs(k[1].rate[axis])) / 2;
+}
+
 /* The acceleration and jerk along the path that all axes can follow there, if
  * nothing bends. */
 struct own {
@@ -244,7 +251,7 @@ static struct own own_of(const struct interp_machine *m, const struct part *k)
 	struct own own = { INFINITY, INFINITY };
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		const double rate = fabs(k[0].rate[i] + k[1].rate[i]) / 2;
+		const double rate = rate_of(k, i);
 
 		own.a_mm_s2 = fmin(own.a_mm_s2, m->axis[i].a_max_mm_s2 / rate);
 		own.j_mm_s3 = fmin(own.j_mm_s3, m->axis[i].j_max_mm_s3 / rate);
@@ -259,8 +266,8 @@ static double follows_mm_s(const struct interp_axis_limits *l,
 			   const struct own *own)
 {
 	const double bend = fabs(bend_of(k, axis));
-	const double rate = fabs(k[0].rate[axis] + k[1].rate[axis]) / 2;
-	const double along = rate * own->a_mm_s2 * INTERP_LEAST_ALONG;
+	const double along = rate_of(k, axis) * own->a_mm_s2 *
+			     INTERP_LEAST_ALONG;
 	const double jerk = INTERP_ARC_JERK_BOTH * l->j_max_mm_s3;
 	const double on = jerk / (3 * bend * INTERP_LEAST_ALONG);
 

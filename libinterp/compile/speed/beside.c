@@ -352,6 +352,5 @@ void pass_note_bends(struct pass *w, uint32_t before, uint32_t behind)
 			pass_bent_node(w, &(struct bent_node) {
 				w->bent[j], j, before, behind,
 				(float)own, own_mm_s3, INFINITY, 0,
-				{ 0, 0 },
 			});
 }

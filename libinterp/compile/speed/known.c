@@ -105,7 +105,8 @@ void pass_known(struct pass *w, uint32_t i, uint32_t along)
 		bend = bend_at(b);
 		note(w, j, &(struct bent) {
 			.bend = bend, .shown = bend, .change = change_at(&k, b),
-			.rate = fabs(k.rate[SIDE - 1][j] + k.rate[SIDE][j]) / 2,
+			.rate = (fabs(k.rate[SIDE - 1][j]) +
+				 fabs(k.rate[SIDE][j])) / 2,
 		}, v);
 	}
 }

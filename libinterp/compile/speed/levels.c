@@ -48,19 +48,11 @@ static void level_a(struct interp_seg *segs, const struct run *k, uint32_t to)
 			segs[i].a_mm_s2 = k->least;
 }
 
-/* Is the node behind segment @s slower than what is beside it? */
-static inline bool limits(const struct interp_seg *s)
-{
-	return s->node_mm_s < s->feed_max_mm_s &&
-	       s->node_mm_s < s[1].feed_max_mm_s;
-}
-
 static void level_node(struct interp_seg *segs, const struct run *k,
 		       uint32_t to)
 {
 	for (uint32_t i = k->from; i < to && k->most > k->least; i++)
-		if (limits(&segs[i]))
-			segs[i].node_mm_s = k->least;
+		segs[i].node_mm_s = k->least;
 }
 
 static void level_j(struct interp_seg *segs, const struct run *k, uint32_t to)
@@ -70,7 +62,18 @@ static void level_j(struct interp_seg *segs, const struct run *k, uint32_t to)
 			segs[i].j_mm_s3 = k->least;
 }
 
-/* Does segment @i go on with these? */
+/* Does segment @i go on with these?  Nodes go on over what does not move. */
+static inline void node_on(struct interp_seg *segs, uint32_t i, struct run *k)
+{
+	const float v = segs[i].node_mm_s;
+
+	/* Nodes without a limit, INFINITY, are a run of their own. */
+	if (run_on(k, v))
+		return;
+	level_node(segs, k, i);
+	*k = (struct run) { i, v, v };
+}
+
 static inline void a_on(struct interp_seg *segs, uint32_t i, struct run *k)
 {
 	const float a = segs[i].a_mm_s2;
@@ -91,38 +94,20 @@ static inline void j_on(struct interp_seg *segs, uint32_t i, struct run *k)
 	*k = (struct run) { i, j, j };
 }
 
-/*
- * Nodes go on over what does not move.  One that is too fast for a run ends it.
- * One that its segments do not reach is none of the run: a long plateau would
- * sink to where it ends.  A run of such nodes has no level, INFINITY.
- */
-static inline void node_on(struct interp_seg *segs, uint32_t i, struct run *k)
-{
-	const float v = segs[i].node_mm_s;
-	const bool counts = limits(&segs[i]);
-
-	if (counts ? run_on(k, v) : v <= STEP * k->least)
-		return;
-	level_node(segs, k, i);
-	*k = counts ? (struct run) { i, v, v } :
-		      (struct run) { i, INFINITY, INFINITY };
-}
-
 void pass_levels(struct pass *w)
 {
 	struct interp_seg *segs = w->segs;
-	const uint32_t last = w->end;
-	struct run a = begin(0), j = begin(0), v = { 0, INFINITY, INFINITY };
+	const uint32_t end = w->end + 1;
+	struct run a = begin(0), j = begin(0), v = begin(0);
 
-	for (uint32_t i = 0; i <= last; i++) {
-		if (i < last)
-			node_on(segs, i, &v);
+	for (uint32_t i = 0; i < end; i++) {
+		node_on(segs, i, &v);
 		if (segs[i].kind >= INTERP_BEGIN)
 			continue;
 		a_on(segs, i, &a);
 		j_on(segs, i, &j);
 	}
-	level_a(segs, &a, last + 1);
-	level_j(segs, &j, last + 1);
-	level_node(segs, &v, last);
+	level_a(segs, &a, end);
+	level_j(segs, &j, end);
+	level_node(segs, &v, end);
 }

@@ -105,11 +105,6 @@ struct bent {
 	double rate;
 };
 
-/* The acceleration and jerk that bends leave for motion along the path. */
-struct leave {
-	double a_mm_s2, j_mm_s3;
-};
-
 /* That of one column, at the node between two segments that move.  What it
  * leaves is known when all nodes are (reach.c). */
 struct bent_node {
@@ -120,13 +115,17 @@ struct bent_node {
 					 * speed */
 	float all;			/* the bend of all columns, if the path
 					 * itself bends; square to it */
-	struct leave left;		/* at the speed that can be come to */
 };
 
 struct bent_nodes {
 	struct bent_node *at;
 	size_t n, room;
 	bool lost;			/* there was no memory for one */
+};
+
+/* The acceleration and jerk that bends leave for motion along the path. */
+struct leave {
+	double a_mm_s2, j_mm_s3;
 };
 
 /* Where the path itself bends, a column that does: at the nodes between the
@@ -524,10 +523,6 @@ void pass_forget(struct pass *w);
 /** pass_bends() - fill the program's @bends, from bends that are noted and from
  *  segments that pass_soften() has not softened. */
 void pass_bends(const struct pass *w, struct interp_bends *bends);
-
-/** pass_raise_floors() - pass those bends slower that leave too little; @v2:
- *  the squares of the speeds that can be come to, at each node. */
-void pass_raise_floors(struct pass *w, float *v2);
 
 /** pass_soften() - the speeds of all nodes are known. */
 void pass_soften(struct pass *w);

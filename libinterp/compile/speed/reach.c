@@ -224,15 +224,14 @@ void pass_soften(struct pass *w)
 
 	cut_peaks(w);
 	v2 = k->n + w->bent_ways.n > 0 ? reach(w) : NULL;
-	soften_ways(w, v2);
-	if (v2 && k->n > 0)
-		pass_raise_floors(w, v2);
+
 	for (size_t n = 0; n < k->n; n++) {
 		const uint32_t at = k->at[n].before;
 
 		soften_by(w, &k->at[n], v2 ? sqrt((double)v2[at]) :
 					     (double)over_mm_s(w, at));
 	}
+	soften_ways(w, v2);
 	free(v2);
 	pass_forget(w);
 }

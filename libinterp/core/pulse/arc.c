@@ -288,8 +288,10 @@ static bool is_odd(const struct interp_cursor *c)
 	const double r_mm = fabs(arc->r_mm) + fabs(arc->dr_mm);
 	const double a = c->pulses_mm[arc->axis_a];
 	const double b = c->pulses_mm[arc->axis_b];
-	const double tick_mm = fabs(c->arc_turn) * fmax(arc->r_mm, arc->r_mm +
-			arc->dr_mm) + fabs(c->arc_grow_mm);
+	const double most_mm = fmax(fabs(arc->r_mm),
+				    fabs(arc->r_mm + arc->dr_mm));
+	const double tick_mm = fabs(c->arc_turn) * most_mm +
+			       fabs(c->arc_grow_mm);
 
 	return (fabs(arc->a_mm) + r_mm) * a >= INT32_MAX ||
 	       (fabs(arc->b_mm) + r_mm) * b >= INT32_MAX ||
