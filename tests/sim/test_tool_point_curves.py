@@ -289,7 +289,7 @@ TURNS_BACK = {
 
 @pytest.mark.parametrize("there", TURNS_BACK.values(), ids=TURNS_BACK)
 def test_a_body_that_turns_back_within_one_way_ends(there):
-    """Where all axes turn back, the mean of their rates is nothing."""
+    """Where all axes turn back, the mean of their rates is zero."""
     text = ("G90 G43.4 F4800\nG0 X30 Y0 Z-60\n"
             "G6.3 L3 P0 R1 X30 Y0 Z-60 Q1\n"
             f"P0 R1 {there}\nP0 R1 X30 Y0 Z-60 Q1\nP1\nP1\nP1\nM2\n")

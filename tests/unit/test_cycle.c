@@ -156,6 +156,41 @@ static void it_goes_back_no_farther_than_the_start_of_the_path(void **st)
 	rig_free(&r);
 }
 
+/* Behind the actions that a program begins with, it positions: at its start
+ * there is nothing to cut. */
+static void at_the_start_it_does_not_spark_in_front_of_a_positioning(void **st)
+{
+	const struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct rig r;
+
+	(void)st;
+	action(b, INTERP_DWELL, 0);
+	rapid_to(b, -0.05);
+	cut_to(b, -5);
+	rig_load(&r, b, &k);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	cut_until(&r, 0.1);
+	steps(&r, SHORTED_V, 60);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	assert_int_equal(r.out.target[INTERP_Z], 0);
+	/* A walk back may end at the program's begin itself, and go on only when
+	 * the machine takes points again. */
+	assert_int_equal(interp_cursor_seek(&r.c.cursor, 0, 0), 0);
+	r.in.busy = true;
+	step(&r, SPARKING_V);
+	assert_int_equal(r.c.state, STATE_APPROACH);
+	assert_int_equal(r.c.cursor.index, 0);
+	assert_false(r.out.power);
+	r.in.busy = false;
+	for (int n = 0; n < 1000 && place(&r) < 0.05 - 2e-9; n++) {
+		step(&r, SPARKING_V);
+		assert_true(!r.out.power || place(&r) > 0.05 - 4e-9);
+	}
+	until(&r, STATE_ERODE, SPARKING_V, 1000);
+	rig_free(&r);
+}
+
 /* -- Jumps --------------------------------------------------------------- */
 
 struct flight {
@@ -412,6 +447,7 @@ int main(void)
 		cmocka_unit_test(a_short_that_clears_is_cut_again),
 		cmocka_unit_test(a_short_that_stays_is_a_fault_after_limit_and_wait),
 		cmocka_unit_test(it_goes_back_no_farther_than_the_start_of_the_path),
+		cmocka_unit_test(at_the_start_it_does_not_spark_in_front_of_a_positioning),
 		cmocka_unit_test(a_jump_goes_up_by_its_height_and_comes_back_just_short),
 		cmocka_unit_test(a_jump_near_the_start_goes_up_as_far_as_there_is_path),
 		cmocka_unit_test(jumps_are_counted_in_cycles_of_erosion),

@@ -68,7 +68,8 @@ enum walk_ahead walk_ahead(const struct cycle *c)
 	return walk_is_cut(c, s) ? AHEAD_CUT : AHEAD_FREE;
 }
 
-/* The motion that led to the actions it stands at. */
+/* Was the motion that led to the actions it stands at no cut?  Nothing was cut
+ * in front of the first motion. */
 static bool was_positioned(const struct cycle *c)
 {
 	const struct interp_seg *s = &c->cursor.seg;
@@ -76,7 +77,7 @@ static bool was_positioned(const struct cycle *c)
 
 	for (int n = 0; n < BEHIND_MAX && i > 0 && s->kind >= INTERP_BEGIN; n++)
 		s = &c->cursor.p.segs[--i];
-	return s->kind < INTERP_BEGIN && s->flags & INTERP_SEG_UNCUT;
+	return s->kind >= INTERP_BEGIN || s->flags & INTERP_SEG_UNCUT;
 }
 
 /* What is sensed is not cut either. */

@@ -233,8 +233,8 @@ static double bend_of(const struct part *k, int axis)
 	return (k[1].rate[axis] - k[0].rate[axis]) * 2 / (k[0].mm + k[1].mm);
 }
 
-/* How much of the path an axis takes there.  Where it turns back it is not that
- * little as the mean of both sides. */
+/* How much of the path an axis takes there, whichever way it goes: where it
+ * turns back, the mean of both sides would say that it stands. */
 static double rate_of(const struct part *k, int axis)
 {
 	return (fabs(k[0].rate[axis]) + fabs(k[1].rate[axis])) / 2;

@@ -66,9 +66,9 @@ static double line_deviation(const struct interp_cursor *c,
 	return sqrt(r2);
 }
 
-/* The same for a line of two axes, as most are: without loops, and without a
- * root beside the line.  What the products of its lengths round is 1e-16 of
- * them. */
+/* The same for a line of two axes, as most are: without loops, and with a root
+ * beyond its ends only.  Its products are rounded by 1e-16 of themselves: of
+ * a line of 1 m that is 2e-10 um. */
 static double flat_deviation(const struct interp_cursor *c,
 			     const struct interp_deviation *d)
 {

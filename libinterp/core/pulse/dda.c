@@ -261,15 +261,17 @@ struct row {
 	bool back;
 };
 
-/* A rotor that turns: 1 << axis of its sums, and the way round.  To multiply
- * takes less than to shift, as one shift is in the register for shifts. */
+/* A rotor that turns; @first and @second are 1 << axis of its sums.  To
+ * multiply by that is cheaper than to shift by the axis: the one register for
+ * shifts has @shift. */
 struct turning {
 	struct sums s;
 	uint32_t shift, first, second;
 	int64_t ccw;
 };
 
-/* So far inside that no tick of some @ticks leaves the range. */
+/* Are both coordinates so far inside their range that none leaves it in @ticks
+ * ticks?  One goes by a pulse a tick at most. */
 INLINE bool is_inside(const struct turning *t, int64_t ticks)
 {
 	const int64_t most = (INT64_C(1) << t->shift) - ticks;

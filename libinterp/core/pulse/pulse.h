@@ -171,14 +171,16 @@ INLINE void pulse_row(uint16_t *ret, uint32_t room, uint16_t pulse, uint32_t n)
 		ret[k] = pulse;
 }
 
-/** pulse_step() - that of one axis; @d is -1, which has all bits, 0 or +1. */
+/** pulse_step() - the pulse of an axis that goes by @d: 0, +1, or -1, which has
+ *  all bits set. */
 static inline uint32_t pulse_step(uint32_t d, uint32_t axis)
 {
 	return (d & 0x101) << axis;
 }
 
 /**
- * pulse_plane_move() - the same for the plane of an arc; each is -1, 0 or +1.
+ * pulse_plane_move() - the same of both axes of an arc's plane; each goes by
+ * -1, 0 or +1.
  */
 static inline uint32_t pulse_plane_move(const struct interp_cursor *c,
 					int32_t da, int32_t db)

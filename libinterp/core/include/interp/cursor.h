@@ -182,7 +182,7 @@ struct interp_cursor {
 	double arc_turn, arc_grow_mm;	/* angle, radius gained per tick */
 	uint32_t arc_block;		/* ticks whose places are known */
 	bool arc_alone;			/* each tick is computed for itself */
-	bool arc_broken;		/* a node is beside its place */
+	bool arc_broken;		/* a node is over a pulse off */
 	double arc_sine[INTERP_ARC_BLOCK];	/* from the middle of a block */
 	double arc_cosine[INTERP_ARC_BLOCK];
 	int32_t arc_at[2][INTERP_ARC_BLOCK + 1];	/* pulses of axis_a,
