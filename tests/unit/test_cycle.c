@@ -174,8 +174,8 @@ static void at_the_start_it_does_not_spark_in_front_of_a_positioning(void **st)
 	steps(&r, SHORTED_V, 60);
 	assert_int_equal(r.c.state, STATE_RETRACT);
 	assert_int_equal(r.out.target[INTERP_Z], 0);
-	/* A walk back may end at the program's begin itself, and go on only when
-	 * the machine takes points again. */
+	/* A walk back may end at the program's begin itself, and go on only
+	 * when the machine takes points again. */
 	assert_int_equal(interp_cursor_seek(&r.c.cursor, 0, 0), 0);
 	r.in.busy = true;
 	step(&r, SPARKING_V);
