@@ -142,6 +142,43 @@ def test_at_a_cusp_a_keeps_its_acceleration(tmp_path):
     assert 200 < most < 1.05 * 300 + 2 * 0.001 / s**2
 
 
+# Bodies that turn back, or turn by a pole.  Their limits: v, a, j of X Y Z A C.
+TURNS_BACK = (
+    5, ((6, 22, 6, 37, 51), (1006, 1203, 249, 141, 131),
+     (19668, 130361, 21443, 8041, 12832)), "X20 Y0 Z-60 A0.000415 C0", """F20000
+G6.3 L4 P0 X20 Y0 Z-60 Q1 I0.000003618
+P0 Z-60
+P0 Z-60
+P0 Q1 I0.000003088 J0.000000099 K-0.000012102
+P1 Z-60
+P1.0000001 Q1 I0.000003618
+P1.0000101 Q1 I0.000003618
+P1.0000201 Q1 I0.000003618
+""" + "P1.0000301\n" * 4)
+
+
+@pytest.mark.parametrize("body", [TURNS_BACK], ids=["beside its path"])
+def test_where_it_turns_back_c_keeps_its_acceleration(tmp_path, body):
+    """It is passed no faster than C can follow, however tiny its lines are."""
+    um, limits, start, text = body
+    (tmp_path / "m.ini").write_text(
+        "[machine]\nbackend = null\n"
+        + INI[INI.index("[kinematics]"):].replace("_um = 1", f"_um = {um}")
+        + "".join(f"[axis.{x}]\npresent = no\n" for x in "BUV") + "".join(
+        f"[axis.{x}]\npulse_mm = 2e-5\nv_max_mm_s = {v}\na_max_mm_s2 = {a}\n"
+        f"j_max_mm_s3 = {j}\ntravel_min_mm = -9000\ntravel_max_mm = 9000\n"
+        for x, v, a, j in zip("XYZAC", *limits)))
+    done("--dry-run", "--machine", tmp_path / "m.ini", "--trace",
+         tmp_path / "t.csv", text=f"G90 G43.4\nG0 {start}\n{text}M2\n")
+    with open(tmp_path / "t.csv") as f:
+        c = np.array([float(row["C"]) for row in csv.DictReader(f)])
+    most = limits[1][4]
+    for ms in (12, 24, 48):
+        off = np.abs(c[2 * ms:] - 2 * c[ms:-ms] + c[:-2 * ms]).max()
+        # Within corner_um and the tolerance of the tip C may be beside it.
+        assert off < 1.05 * most * (ms / 1e3)**2 + 4 * 0.010, ms
+
+
 def angle_deg(a, b):
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1),
                                  (a * b).sum(-1)))
