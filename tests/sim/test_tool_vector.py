@@ -179,6 +179,29 @@ def test_where_it_turns_back_c_keeps_its_acceleration(tmp_path, body):
         assert off < 1.05 * most * (ms / 1e3)**2 + 4 * 0.010, ms
 
 
+AT_A_POLE = {
+    "the tip stands": ("A0 C0", """F20000
+G6.3 L5 P0 R1.306942 X0 Y0 Z-60 Q1
+P0 R0.347643 Q1 I0.000013008 J0.000018021 K-0.000016749
+P0 R0.452495 Q1
+P0 R0.793186 Q1 I-0.000005009 J0.000006163 K0.0000157
+P0 R2.068214 Q1
+P1 R0.366084 Q1 I-0.000005505
+P1 R0.514426 Q1
+""" + "P2\n" * 5, 4.8),
+}
+
+
+@pytest.mark.parametrize("name", AT_A_POLE)
+def test_at_a_pole_a_body_goes_on(name):
+    """Its lines are some nanometres long there, or degrees."""
+    start, text, most_s = AT_A_POLE[name]
+    r = report("--dry-run", "--limit-s", 60, "--machine",
+               ROOT / "examples/machine-five-axis.ini",
+               text=f"G90 G43.4\nG0 X0 Y0 Z-60 {start}\n{text}M2\n")
+    assert r["outcome"] == "done" and r["virtual_s"] < most_s
+
+
 def angle_deg(a, b):
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1),
                                  (a * b).sum(-1)))
