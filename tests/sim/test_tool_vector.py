@@ -155,9 +155,22 @@ P1.0000001 Q1 I0.000003618
 P1.0000101 Q1 I0.000003618
 P1.0000201 Q1 I0.000003618
 """ + "P1.0000301\n" * 4)
+TURNS_BACK_AT_A_POLE = (
+    1, ((14, 6, 39, 62, 84), (171, 1017, 396, 260, 103),
+     (6117, 25396, 7498, 20502, 63943)), "X0 Y0 Z-60 A0 C0", """F600
+G6.3 L7 P0 X0 Y0 Z-60 Q1
+P0 X-0.004629 Y-0.00485 Z-60.004661 Q1 K0.017417593
+P0 X0 Y0 Z-60 Q1 I0.018042819 K-0.012471297
+P0 X-0.00368 Q1 I-0.007317978 J-0.003154055
+P0 X-0.00368 Q1 I-0.007317978 J-0.003154055
+P0 X0 Y0 Z-60 Q1 I0.018042819 K-0.012471297
+P0 X-0.004629 Y-0.00485 Z-60.004661 Q1 K0.017417593
+P1 X0 Y0 Z-60 Q1
+""" + "P2\n" * 7)
 
 
-@pytest.mark.parametrize("body", [TURNS_BACK], ids=["beside its path"])
+@pytest.mark.parametrize("body", [TURNS_BACK, TURNS_BACK_AT_A_POLE],
+                         ids=["beside its path", "at a pole"])
 def test_where_it_turns_back_c_keeps_its_acceleration(tmp_path, body):
     """It is passed no faster than C can follow, however tiny its lines are."""
     um, limits, start, text = body
@@ -189,6 +202,14 @@ P0 R2.068214 Q1
 P1 R0.366084 Q1 I-0.000005505
 P1 R0.514426 Q1
 """ + "P2\n" * 5, 4.8),
+    "it leaves it": ("A-0.00028 C-8.147295", """F4800
+G6.3 L2 P0 X0 Y0 Z-60 Q0.997473562 I-0.000002435 J0.000000173 K-0.071038677
+P0 Y-0.002586 Z-60.001017 Q0.997473562 I-0.000002435 J0.000000173 K-0.082049456
+P1 Q0.997473562 I-0.005374664 J0.005153677 K-0.083577986
+P2 Y0 Z-60 Q0.997473562 I-0.000002435 J0.000000173 K-0.071038677
+P3
+P3
+""", 6),
 }
 
 
