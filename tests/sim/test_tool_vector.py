@@ -142,6 +142,87 @@ def test_at_a_cusp_a_keeps_its_acceleration(tmp_path):
     assert 200 < most < 1.05 * 300 + 2 * 0.001 / s**2
 
 
+# Bodies that turn back, or turn by a pole.  Their limits: v, a, j of X Y Z A C.
+TURNS_BACK = (
+    5, ((6, 22, 6, 37, 51), (1006, 1203, 249, 141, 131),
+     (19668, 130361, 21443, 8041, 12832)), "X20 Y0 Z-60 A0.000415 C0", """F20000
+G6.3 L4 P0 X20 Y0 Z-60 Q1 I0.000003618
+P0 Z-60
+P0 Z-60
+P0 Q1 I0.000003088 J0.000000099 K-0.000012102
+P1 Z-60
+P1.0000001 Q1 I0.000003618
+P1.0000101 Q1 I0.000003618
+P1.0000201 Q1 I0.000003618
+""" + "P1.0000301\n" * 4)
+TURNS_BACK_AT_A_POLE = (
+    1, ((14, 6, 39, 62, 84), (171, 1017, 396, 260, 103),
+     (6117, 25396, 7498, 20502, 63943)), "X0 Y0 Z-60 A0 C0", """F600
+G6.3 L7 P0 X0 Y0 Z-60 Q1
+P0 X-0.004629 Y-0.00485 Z-60.004661 Q1 K0.017417593
+P0 X0 Y0 Z-60 Q1 I0.018042819 K-0.012471297
+P0 X-0.00368 Q1 I-0.007317978 J-0.003154055
+P0 X-0.00368 Q1 I-0.007317978 J-0.003154055
+P0 X0 Y0 Z-60 Q1 I0.018042819 K-0.012471297
+P0 X-0.004629 Y-0.00485 Z-60.004661 Q1 K0.017417593
+P1 X0 Y0 Z-60 Q1
+""" + "P2\n" * 7)
+
+
+@pytest.mark.parametrize("body", [TURNS_BACK, TURNS_BACK_AT_A_POLE],
+                         ids=["beside its path", "at a pole"])
+def test_where_it_turns_back_c_keeps_its_acceleration(tmp_path, body):
+    """It is passed no faster than C can follow, however tiny its lines are."""
+    um, limits, start, text = body
+    (tmp_path / "m.ini").write_text(
+        "[machine]\nbackend = null\n"
+        + INI[INI.index("[kinematics]"):].replace("_um = 1", f"_um = {um}")
+        + "".join(f"[axis.{x}]\npresent = no\n" for x in "BUV") + "".join(
+        f"[axis.{x}]\npulse_mm = 2e-5\nv_max_mm_s = {v}\na_max_mm_s2 = {a}\n"
+        f"j_max_mm_s3 = {j}\ntravel_min_mm = -9000\ntravel_max_mm = 9000\n"
+        for x, v, a, j in zip("XYZAC", *limits)))
+    done("--dry-run", "--machine", tmp_path / "m.ini", "--trace",
+         tmp_path / "t.csv", text=f"G90 G43.4\nG0 {start}\n{text}M2\n")
+    with open(tmp_path / "t.csv") as f:
+        c = np.array([float(row["C"]) for row in csv.DictReader(f)])
+    most = limits[1][4]
+    for ms in (12, 24, 48):
+        off = np.abs(c[2 * ms:] - 2 * c[ms:-ms] + c[:-2 * ms]).max()
+        # Within corner_um and the tolerance of the tip C may be beside it.
+        assert off < 1.05 * most * (ms / 1e3)**2 + 4 * 0.010, ms
+
+
+AT_A_POLE = {
+    "the tip stands": ("A0 C0", """F20000
+G6.3 L5 P0 R1.306942 X0 Y0 Z-60 Q1
+P0 R0.347643 Q1 I0.000013008 J0.000018021 K-0.000016749
+P0 R0.452495 Q1
+P0 R0.793186 Q1 I-0.000005009 J0.000006163 K0.0000157
+P0 R2.068214 Q1
+P1 R0.366084 Q1 I-0.000005505
+P1 R0.514426 Q1
+""" + "P2\n" * 5, 4.8),
+    "it leaves it": ("A-0.00028 C-8.147295", """F4800
+G6.3 L2 P0 X0 Y0 Z-60 Q0.997473562 I-0.000002435 J0.000000173 K-0.071038677
+P0 Y-0.002586 Z-60.001017 Q0.997473562 I-0.000002435 J0.000000173 K-0.082049456
+P1 Q0.997473562 I-0.005374664 J0.005153677 K-0.083577986
+P2 Y0 Z-60 Q0.997473562 I-0.000002435 J0.000000173 K-0.071038677
+P3
+P3
+""", 6),
+}
+
+
+@pytest.mark.parametrize("name", AT_A_POLE)
+def test_at_a_pole_a_body_goes_on(name):
+    """Its lines are some nanometres long there, or degrees."""
+    start, text, most_s = AT_A_POLE[name]
+    r = report("--dry-run", "--limit-s", 60, "--machine",
+               ROOT / "examples/machine-five-axis.ini",
+               text=f"G90 G43.4\nG0 X0 Y0 Z-60 {start}\n{text}M2\n")
+    assert r["outcome"] == "done" and r["virtual_s"] < most_s
+
+
 def angle_deg(a, b):
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1),
                                  (a * b).sum(-1)))

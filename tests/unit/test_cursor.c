@@ -377,6 +377,33 @@ static void an_arc_of_a_negative_radius_says_each_pulse(void **st)
 	unmake(&m);
 }
 
+/* Where the way breaks off it stands where it was told that it came to. */
+static void a_run_into_damage_goes_nowhere(void **st)
+{
+	const double end[INTERP_NAXES] = { 0, 0.2 };
+	struct interp_build *b = begin(INTERP_POINT_BY_POINT);
+	struct interp_seg *s;
+	uint16_t pulses[64];
+	struct interp_cursor c;
+	int32_t at[INTERP_NAXES];
+	struct made m;
+
+	(void)st;
+	arc(b, end, 0, 0.1, false);
+	m = finish(b);
+	s = (struct interp_seg *)m.p.segs + 1;
+	((struct interp_arc *)m.p.arcs)->circle_ticks--;
+	s->ticks--;
+	assert_int_equal(interp_cursor_init(&c, &m.p), 0);
+	assert_int_equal(interp_cursor_seek(&c, 1, s->ticks - 20), 0);
+	memcpy(at, c.pos, sizeof(at));
+	interp_cursor_aim(&c, 1e9);
+	assert_int_equal(interp_cursor_run(&c, pulses, 64), 0);
+	assert_int_equal(interp_cursor_step(&c), INTERP_BAD_SEGMENT);
+	assert_memory_equal(at, c.pos, sizeof(at));
+	unmake(&m);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -391,6 +418,7 @@ int main(void)
 		cmocka_unit_test(a_place_can_be_sought),
 		cmocka_unit_test(a_damaged_block_never_leads_astray),
 		cmocka_unit_test(an_arc_of_a_negative_radius_says_each_pulse),
+		cmocka_unit_test(a_run_into_damage_goes_nowhere),
 	};
 
 	return cmocka_run_group_tests_name("interp/cursor", tests, NULL, NULL);

@@ -211,6 +211,7 @@ static int cut_piece(struct nc_reader *r, const struct nc_tip_way *w,
 
 struct part {
 	double mm;			/* of path; 0: the way has ended */
+	bool linear;			/* mm of X Y Z, not degrees */
 	double rate[INTERP_NAXES];	/* of each axis, in a mm */
 };
 
@@ -219,12 +220,22 @@ static struct part part_of(const double *a, const double *b)
 {
 	const double xyz = span(a, b, INTERP_X, 3);
 	const double abc = span(a, b, INTERP_A, 3);
-	struct part ret = { .mm = build_counts(xyz * xyz, abc * abc) ?
-				  xyz : abc };
+	const bool linear = build_counts(xyz * xyz, abc * abc);
+	struct part ret = { .mm = linear ? xyz : abc, .linear = linear };
 
 	for (int i = 0; i < INTERP_NAXES && ret.mm > 0; i++)
 		ret.rate[i] = (b[i] - a[i]) / ret.mm;
 	return ret;
+}
+
+/* Do these @n parts of the way have the same units, and is none of them tiny
+ * beside the piece? */
+static bool go_on(const struct part *k, int n, double least_mm)
+{
+	for (int i = 0; i < n; i++)
+		if (!(k[i].mm > least_mm) || k[i].linear != k[0].linear)
+			return false;
+	return true;
 }
 
 /* Between a part and the next one the rate of an axis changes in a mm by: */
@@ -281,7 +292,7 @@ static double bend_mm_s(const struct interp_machine *m, const struct part *k,
 	const struct own own = own_of(m, k);
 	double v = INFINITY;
 
-	if (!(k[0].mm > least_mm && k[1].mm > least_mm))
+	if (!go_on(k, 2, least_mm))
 		return INFINITY;
 	for (int i = INTERP_A; i < INTERP_NAXES; i++)
 		v = fmin(v, follows_mm_s(&m->axis[i], k, i, &own));
@@ -294,7 +305,7 @@ static double change_mm_s(const struct interp_machine *m, const struct part *k,
 {
 	double v = INFINITY;
 
-	if (!(k[0].mm > least_mm && k[1].mm > least_mm && k[2].mm > least_mm))
+	if (!go_on(k, 3, least_mm))
 		return INFINITY;
 	for (int i = INTERP_A; i < INTERP_NAXES; i++) {
 		const double change = fabs(bend_of(k + 1, i) - bend_of(k, i)) /

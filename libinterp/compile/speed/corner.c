@@ -257,6 +257,8 @@ void pass_beside_corner(struct pass *w, uint32_t known)
 	at = alone ? lone.at : sharpest(w, at);
 	if (alone)
 		w->segs[at - 1].node_mm_s = (float)lone.mm_s;
+	/* No other node is slow for this corner from here on. */
+	pass_dip_firm(w, at - 1, at, (double)w->segs[at - 1].node_mm_s);
 	pass_change_anew(w, pass_away(w, at, 1, far));
 	again = *w;
 	pass_change_anew(&again, UINT32_MAX);

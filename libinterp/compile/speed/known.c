@@ -25,20 +25,22 @@ struct known_node {
 	double rate[2 * SIDE][INTERP_NAXES];
 };
 
-static void look_at(const struct pass *w, uint32_t i, struct known_node *ret)
+/* @along: what makes the length; where other axes do, it is in other units. */
+static void look_at(const struct pass *w, uint32_t i, uint32_t along,
+		    struct known_node *ret)
 {
 	for (uint32_t k = 0; k < 2 * SIDE; k++) {
 		const uint32_t line = i + k - SIDE;
-		int64_t sub[INTERP_NAXES];
-		struct heading h;
+		struct headings h;
 
 		ret->mm[k] = 0;
 		if (i + k < w->run + SIDE || line >= w->run_end ||
 		    !pass_is_known(w, i, line))
 			continue;
-		heading_straight(&w->ways, line, &h, sub, w->n);
-		memcpy(ret->rate[k], h.rate, w->n * sizeof(*h.rate));
-		ret->mm[k] = w->segs[line].length_mm;
+		heading_of(&w->ways, line, &h);
+		memcpy(ret->rate[k], h.first.rate, w->n * sizeof(double));
+		if (h.first.along == along)
+			ret->mm[k] = w->segs[line].length_mm;
 	}
 }
 
@@ -94,7 +96,7 @@ void pass_known(struct pass *w, uint32_t i, uint32_t along)
 				 (double)w->segs[i].feed_max_mm_s);
 	struct known_node k;
 
-	look_at(w, i, &k);
+	look_at(w, i, along, &k);
 	w->bends = 0;
 	for (uint32_t j = 0; j < w->n; j++) {
 		double b[NODES], bend;

@@ -435,7 +435,8 @@ COLUMNS_INLINE double near_joint_mm_s(struct pass *w, struct joint *k,
 	}
 	if (!curves)
 		v = smaller(v, near_arch(w, k, smaller(v, most), both));
-	if (!all && pass_is_known(w, k->last, k->i))
+	if (!all && k->a->along == k->b->along &&
+	    pass_is_known(w, k->last, k->i))
 		pass_known(w, k->i, both);
 	return v;
 }

@@ -347,12 +347,34 @@ static bool is_crooked(const struct pass *w, const struct around *k)
 	return false;
 }
 
-/* By a corner, and by the steps of all columns. */
+/* By a corner, and by the steps of these columns. */
 COLUMNS_INLINE double around(struct pass *w, struct change *c, uint32_t both,
-			     uint32_t n)
+			     uint32_t columns, uint32_t n)
 {
 	change_of(w, heard, c, both, n);
-	return smaller(corner(w, c, both, n), step(w, c->d, near_all(n), n));
+	return smaller(corner(w, c, both, n), step(w, c->d, columns, n));
+}
+
+/* Are all of these segments parts of known ways? */
+static bool are_known(const struct pass *w, uint32_t from, uint32_t to)
+{
+	for (uint32_t i = from; i <= to; i++)
+		if (!(w->segs[i].flags & INTERP_SEG_KNOWN))
+			return false;
+	return true;
+}
+
+/* By the steps of what is beside known ways.  No rounding hides them.  Over
+ * chords, a bend of a tiny way would be a step, and a step less than it is. */
+COLUMNS_INLINE double step_known(const struct pass *w, const struct heading *a,
+				 const struct heading *b, uint32_t both,
+				 uint32_t n)
+{
+	double d[INTERP_NAXES];
+
+	for (uint32_t j = 0; j < n; j++)
+		d[j] = fabs(b->rate[j] - a->rate[j]);
+	return step(w, d, ~both & near_all(n), n);
 }
 
 double pass_corner(struct pass *w, const struct chord *a,
@@ -361,7 +383,7 @@ double pass_corner(struct pass *w, const struct chord *a,
 	struct change c = { .a = &a->h, .b = &b->h,
 			    .per_mm = a->per_mm + b->per_mm };
 
-	return around(w, &c, a->h.along, w->n);
+	return around(w, &c, a->h.along, near_all(w->n), w->n);
 }
 
 /*
@@ -402,6 +424,7 @@ COLUMNS_INLINE double turn(struct pass *w, uint32_t last, uint32_t i,
 	struct change c = { .a = a, .b = b, .per_mm = own_per_mm };
 	bool near = lines && smaller(s[last].length_mm, s[i].length_mm) <
 				     w->near.mm;
+	const bool known = a->along == b->along && are_known(w, last, i);
 	double v, along;
 	struct bow k;
 
@@ -416,7 +439,8 @@ COLUMNS_INLINE double turn(struct pass *w, uint32_t last, uint32_t i,
 		c.per_mm = k.per_mm;
 	}
 	change_of(w, heard, &c, both, n);
-	v = smaller(corner(w, &c, both, n),
+	v = smaller(corner(w, &c, both, n), known ?
+		    step_known(w, a, b, both, n) :
 		    step(w, c.d, ~both & near_all(n), n));
 	along = step(w, c.d, both, n);
 	if (along < v && !near && lines && last + 1 == i) {
@@ -429,7 +453,7 @@ COLUMNS_INLINE double turn(struct pass *w, uint32_t last, uint32_t i,
 		c.a = a;
 		c.b = b;
 		c.per_mm = own_per_mm;
-		v = smaller(v, around(w, &c, both, n));
+		v = smaller(v, around(w, &c, both, near_all(n), n));
 	}
 	return v;
 }
@@ -454,7 +478,7 @@ double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
 	const struct interp_seg *s = w->segs;
 	struct headings before;
 	struct change c;
-	uint32_t m = *first, both;
+	uint32_t m = *first, both, steps = near_all(w->n);
 
 	while (m > 0 && s[m].kind < INTERP_BEGIN && pass_is_tiny(w, m) &&
 	       s[i].s_mm - s[m].s_mm < w->near.mm)
@@ -467,7 +491,9 @@ double pass_over_mm_s(struct pass *w, uint32_t *first, uint32_t i,
 	both = c.a->along & b->along;
 	c.per_mm = 1 / s[m].length_mm + 1 / s[i].length_mm;
 	*first = m;
-	return around(w, &c, both, w->n);
+	if (c.a->along == b->along && are_known(w, m, i))
+		steps = both;
+	return around(w, &c, both, steps, w->n);
 }
 
 /* From node @from to node @to, what column @j moves in a mm of the path. */

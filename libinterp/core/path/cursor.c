@@ -246,8 +246,11 @@ static bool must_cross(const struct interp_cursor *c)
 		c->p.segs[c->index + 1].kind >= INTERP_BEGIN);
 }
 
-static enum interp_step cursor_bad(struct interp_cursor *c)
+/* It may have come some points on from @here, of which nobody is told. */
+static enum interp_step cursor_bad(struct interp_cursor *c,
+				   const int32_t here[INTERP_NAXES])
 {
+	memcpy(c->pos, here, sizeof(c->pos));
 	c->walk = NULL;
 	return INTERP_BAD_SEGMENT;
 }
@@ -273,13 +276,15 @@ static uint32_t run_even(struct interp_cursor *c, uint16_t *ret, uint32_t max)
 uint32_t interp_cursor_run(struct interp_cursor *c, uint16_t *ret,
 			   uint32_t max)
 {
+	int32_t here[INTERP_NAXES];
 	uint32_t n;
 
 	if (!c->walk)
 		return 0;
+	memcpy(here, c->pos, sizeof(here));
 	n = c->walk->last ? cursor_ticks(c, max, ret) : run_even(c, ret, max);
 	if (n == PULSE_BAD) {
-		c->walk = NULL;
+		cursor_bad(c, here);
 		return 0;
 	}
 	if (n > 0)
@@ -289,8 +294,11 @@ uint32_t interp_cursor_run(struct interp_cursor *c, uint16_t *ret,
 
 enum interp_step interp_cursor_step(struct interp_cursor *c)
 {
+	int32_t here[INTERP_NAXES];
+
 	if (!c->walk)
 		return INTERP_BAD_SEGMENT;
+	memcpy(here, c->pos, sizeof(here));
 	for (int crossed = 0; ; crossed++) {
 		enum interp_step s;
 
@@ -299,7 +307,7 @@ enum interp_step interp_cursor_step(struct interp_cursor *c)
 			const uint32_t n = cursor_ticks(c, 1, &pulses);
 
 			if (n == PULSE_BAD)
-				return cursor_bad(c);
+				return cursor_bad(c, here);
 			if (n > 0) {
 				c->moved = INTERP_PULSE_MOVED(pulses);
 				return INTERP_MOVED;
