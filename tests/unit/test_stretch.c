@@ -31,6 +31,19 @@ static void to(struct interp_build *b, double x_mm, double c_deg)
 	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
 }
 
+static void by(struct interp_build *b, double x_mm, double y_mm, double c_deg)
+{
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 60 };
+	double end[INTERP_NAXES];
+	struct interp_diag d;
+
+	memcpy(end, interp_build_here(b), sizeof(end));
+	end[INTERP_X] += x_mm;
+	end[INTERP_Y] += y_mm;
+	end[INTERP_C] += c_deg;
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+}
+
 static struct interp_build *begin_plain(void)
 {
 	static const struct interp_build_options o = {
@@ -198,6 +211,29 @@ static void a_line_between_turns_is_not_as_soft_as_they(void **st)
 	assert_true(s[1] < 5);
 }
 
+/* A comb of lines of 0.03 mm takes 1.02 s, nearly all on the second and on the
+ * last one, where C turns.  Windows of the lines between see that: as soft as C
+ * needs it in the mean of a window, they took a third more. */
+static void short_lines_beside_a_turn_are_not_as_soft_as_it(void **st)
+{
+	struct interp_build *b = begin_plain();
+	double s[2];
+
+	(void)st;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		axes_machine.axis[i].a_max_mm_s2 = 4300;
+		axes_machine.axis[i].j_max_mm_s3 = 42000;
+	}
+	axes_machine.axis[INTERP_C].a_max_mm_s2 = 157;
+	axes_machine.axis[INTERP_C].j_max_mm_s3 = 5100;
+	for (int i = 0; i < 10; i++)
+		by(b, i % 2 ? 0 : 0.0308, i % 4 == 1 ? -0.0294 :
+		   i % 4 == 3 ? 0.0294 : 0, i == 1 ? -6 : i == 9 ? 4 : 0);
+	walk(finish(b), s);
+	assert_true(s[0] < 1.1);
+	assert_true(s[1] < 1.1);
+}
+
 static uint32_t stands_of(const struct made *m)
 {
 	uint32_t n = 0;
@@ -328,6 +364,7 @@ int main(void)
 		cmocka_unit_test(nearer_and_nearer_to_a_pole_it_comes_past),
 		cmocka_unit_test(a_turn_alone_is_not_as_soft_as_a_line_beside_it),
 		cmocka_unit_test(a_line_between_turns_is_not_as_soft_as_they),
+		cmocka_unit_test(short_lines_beside_a_turn_are_not_as_soft_as_it),
 		cmocka_unit_test(what_is_soft_again_and_again_is_one_move),
 		cmocka_unit_test(between_slow_nodes_it_stands_where_that_is_quicker),
 		cmocka_unit_test(a_circle_of_little_jerk_is_as_fast_as_its_bend),

@@ -366,6 +366,15 @@ static inline double pass_off(const struct pass *w, uint32_t j, double along,
 	return smaller(along * rate, PASS_MOST_BESIDE * w->tol[j]);
 }
 
+/** pass_rate() - how far column @j goes in a mm of segment @i, in the mean. */
+static inline double pass_rate(const struct pass *w, uint32_t i, uint32_t j)
+{
+	const int64_t *from = w->p->nodes + (uint64_t)i * w->n + j;
+
+	return (double)(from[w->n] - from[0]) * w->ways.sub_mm[j] /
+	       w->segs[i].length_mm;
+}
+
 /** pass_begin() - before the first segment.  @p and @segs are lent. */
 void pass_begin(struct pass *w, const struct interp_limits *l,
 		const struct interp_program *p, struct interp_seg *segs);
