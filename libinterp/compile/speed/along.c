@@ -109,15 +109,6 @@ void pass_turn_behind(const struct pass *w, uint32_t i,
 		ret[j] = h[1].rate[j] - h[0].rate[j];
 }
 
-/* How far column @j goes in a mm of line @i. */
-static double rate_of(const struct pass *w, uint32_t i, uint32_t j)
-{
-	const int64_t *from = w->p->nodes + (uint64_t)i * w->n + j;
-
-	return (double)(from[w->n] - from[0]) * w->ways.sub_mm[j] /
-	       w->segs[i].length_mm;
-}
-
 /* How column rates change in a mm at the node in front of segment @i, which is
  * between two lines. */
 static void bend_at(const struct pass *w, uint32_t i, double ret[INTERP_NAXES])
@@ -165,7 +156,8 @@ double pass_arch(struct pass *w, uint32_t i, uint32_t along, double most_mm_s)
 		if (!(along >> j & 1))
 			continue;
 		is[j].bend = share * fabs(here[j]);
-		is[j].rate = fabs(rate_of(w, i - 1, j) + rate_of(w, i, j)) / 2;
+		is[j].rate = fabs(pass_rate(w, i - 1, j) +
+				  pass_rate(w, i, j)) / 2;
 		sum += is[j].bend * is[j].bend;
 		if (is[j].bend > 0 || is[j].rate > 0)
 			moves |= 1u << j;

@@ -310,90 +310,168 @@ static uint32_t behind_stand(const struct pass *w, uint32_t at, uint32_t to)
 	return at < to ? at + 1 : to;
 }
 
-/* A stand is in the node before @mid.  Return: the share of the time that the
- * move from @from to @to takes with it; at F, if there it costs too much. */
-static double stand_share(struct pass *w, uint32_t from, uint32_t mid,
-			  uint32_t to, float *v2)
-{
-	const double apart = pass_moves_s(w, from, to, false, v2);
-	double share, fed = 0;
+/* Of the time of the moves beside it, a stand must save so much.  It is little:
+ * what is lost where one goes adds up over all that go. */
+#define JOIN_WORTH	0.998
 
-	pass_set_stand(w, mid - 1, false);
-	share = apart / pass_moves_s(w, from, to, false, v2);
-	if (share < PASS_WORTH)
-		fed = 1 / pass_moves_s(w, from, to, true, v2);
-	pass_set_stand(w, mid - 1, true);
-	if (fed > 0)
-		fed *= pass_moves_s(w, from, to, true, v2);
-	return fed >= PASS_COST ? fed : share;
-}
+/* Where stands save a little more, two of them may still cost time together. */
+#define JOIN_ON		0.97
 
-/* A share that is not known. */
+/* Stands between segments @from and @to.  What is known holds as long as the
+ * moves beside it stay. */
+struct apart {
+	struct pass *pass;
+	uint32_t from, to;
+	float *v2;			/* room of pass_moves_s() */
+	float *share;			/* of each stand, by the segment before
+					 * it; UNKNOWN */
+	float *alone_s[2];		/* of each move, by its last one; fed */
+	float *stood;			/* 0, or it did before */
+};
+
 #define UNKNOWN		0.0f
 
-/* The shares of the stands, by the segment in front of each.  What is known of
- * one holds as long as the stands beside it stay. */
-static void find_shares(struct pass *w, uint32_t from, uint32_t to, float *v2,
-			float *share)
+/* The move from @from to @to. */
+static double alone_s(const struct apart *k, uint32_t from, uint32_t to,
+		      bool fed)
 {
-	uint32_t mid = behind_stand(w, from, to);
+	float *s = &k->alone_s[fed][to - 1];
 
-	while (mid < to) {
-		const uint32_t end = behind_stand(w, mid, to);
+	if (*s == UNKNOWN)
+		*s = (float)pass_moves_s(k->pass, from, to, fed, k->v2);
+	return (double)*s;
+}
 
-		if (share[mid - 1] == UNKNOWN)
-			share[mid - 1] = (float)stand_share(w, from, mid, end,
-							    v2);
+/* A stand is in the node before @mid.  Return: the share of the time that the
+ * move from @from to @to takes with it. */
+static double share_of(const struct apart *k, uint32_t from, uint32_t mid,
+		       uint32_t to, bool fed)
+{
+	const double apart = alone_s(k, from, mid, fed) +
+			     alone_s(k, mid, to, fed);
+	double one;
+
+	pass_set_stand(k->pass, mid - 1, false);
+	one = pass_moves_s(k->pass, from, to, fed, k->v2);
+	pass_set_stand(k->pass, mid - 1, true);
+	return apart / one;
+}
+
+/* At F, if there it costs too much. */
+static double stand_share(const struct apart *k, uint32_t from, uint32_t mid,
+			  uint32_t to)
+{
+	const double share = share_of(k, from, mid, to, false);
+	double fed;
+
+	if (share >= JOIN_WORTH)
+		return share;
+	fed = share_of(k, from, mid, to, true);
+	return fed >= pass_most_at_feed(share) ? fed : share;
+}
+
+static void find_shares(const struct apart *k)
+{
+	uint32_t from = k->from, mid = behind_stand(k->pass, from, k->to);
+
+	while (mid < k->to) {
+		const uint32_t end = behind_stand(k->pass, mid, k->to);
+
+		if (k->share[mid - 1] == UNKNOWN)
+			k->share[mid - 1] = (float)stand_share(k, from, mid,
+							       end);
 		from = mid;
 		mid = end;
 	}
 }
 
-/* If fewer stands go than one for so many that stay, the next look would find
- * hardly any. */
-#define JOIN_SHARE	4
-
-/* Take the stands away that save too little, of those beside each other only
- * the one that saves least: what the others save depends on it.  Return: does
- * another look pay? */
-static bool join_moves(struct pass *w, uint32_t from, uint32_t to, float *share)
+/* Take the stands away that save less than @worth, of those beside each other
+ * only the one that saves least: what the others save depends on it.  Return:
+ * did any go? */
+static bool join_moves(const struct apart *k, double worth)
 {
-	float before = UNKNOWN, is, next;
-	uint32_t kept = 0, taken = 0, prior = 0;
-	uint32_t at = behind_stand(w, from, to);
+	float *share = k->share, before = UNKNOWN, is, next;
+	uint32_t prior = 0, at = behind_stand(k->pass, k->from, k->to);
+	bool any = false;
 
-	for (is = at < to ? share[at - 1] : 0; at < to; is = next) {
-		const uint32_t end = behind_stand(w, at, to);
+	for (is = at < k->to ? share[at - 1] : 0; at < k->to; is = next) {
+		const uint32_t end = behind_stand(k->pass, at, k->to);
 
-		next = end < to ? share[end - 1] : 0;
-		if ((double)is >= PASS_WORTH && is >= next && is > before) {
-			pass_set_stand(w, at - 1, false);
+		next = end < k->to ? share[end - 1] : 0;
+		if ((double)is >= worth && is >= next && is > before) {
+			pass_set_stand(k->pass, at - 1, false);
 			if (prior > 0)
 				share[prior - 1] = UNKNOWN;
-			if (end < to)
-				share[end - 1] = UNKNOWN;
-			taken++;
-		} else {
-			kept++;
+			share[end - 1] = UNKNOWN;
+			k->alone_s[0][end - 1] = UNKNOWN;
+			k->alone_s[1][end - 1] = UNKNOWN;
+			any = true;
 		}
 		before = is;
 		prior = at;
 		at = end;
 	}
-	return taken > kept / JOIN_SHARE;
+	return any;
 }
 
 #define JOIN_MOST	16		/* looks */
 
+static void join(const struct apart *k, double worth)
+{
+	bool more = true;
+
+	for (int i = 0; more && i < JOIN_MOST; i++) {
+		find_shares(k);
+		more = join_moves(k, worth);
+	}
+}
+
+static bool is_any(const float *stood, uint32_t from, uint32_t to)
+{
+	while (from < to && !(stood[from] > 0))
+		from++;
+	return from < to;
+}
+
+static void set_stands(const struct apart *k, uint32_t from, uint32_t to,
+		       bool stands)
+{
+	for (uint32_t i = from; i < to; i++)
+		if (k->stood[i] > 0)
+			pass_set_stand(k->pass, i, stands);
+}
+
+/* In each move in which it stood before, it stands again if that is quicker. */
+static void stand_again(const struct apart *k)
+{
+	for (uint32_t at = k->from, end; at < k->to; at = end) {
+		double one;
+
+		end = behind_stand(k->pass, at, k->to);
+		if (!is_any(k->stood, at, end - 1))
+			continue;
+		one = alone_s(k, at, end, false);
+		set_stands(k, at, end - 1, true);
+		if (pass_moves_s(k->pass, at, end, false, k->v2) >= one)
+			set_stands(k, at, end - 1, false);
+	}
+}
+
 void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *room)
 {
-	float *share = room + to;
-	bool more = set_apart(w, from, to);
+	const struct apart k = {
+		w, from, to, room, room + to,
+		{ room + (size_t)to * 2, room + (size_t)to * 3 },
+		room + (size_t)to * 4
+	};
 
+	if (!set_apart(w, from, to))
+		return;
 	for (uint32_t i = from; i < to; i++)
-		share[i] = UNKNOWN;
-	for (int i = 0; more && i < JOIN_MOST; i++) {
-		find_shares(w, from, to, room, share);
-		more = join_moves(w, from, to, share);
-	}
+		k.share[i] = k.alone_s[0][i] = k.alone_s[1][i] = UNKNOWN;
+	join(&k, JOIN_WORTH);
+	for (uint32_t i = from; i < to; i++)
+		k.stood[i] = w->segs[i].flags & INTERP_SEG_STAND ? 1 : 0;
+	join(&k, JOIN_ON);
+	stand_again(&k);
 }

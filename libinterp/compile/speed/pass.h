@@ -366,6 +366,15 @@ static inline double pass_off(const struct pass *w, uint32_t j, double along,
 	return smaller(along * rate, PASS_MOST_BESIDE * w->tol[j]);
 }
 
+/** pass_rate() - how far column @j goes in a mm of segment @i, in the mean. */
+static inline double pass_rate(const struct pass *w, uint32_t i, uint32_t j)
+{
+	const int64_t *from = w->p->nodes + (uint64_t)i * w->n + j;
+
+	return (double)(from[w->n] - from[0]) * w->ways.sub_mm[j] /
+	       w->segs[i].length_mm;
+}
+
 /** pass_begin() - before the first segment.  @p and @segs are lent. */
 void pass_begin(struct pass *w, const struct interp_limits *l,
 		const struct interp_program *p, struct interp_seg *segs);
@@ -724,16 +733,26 @@ void pass_stretches(struct pass *w);
 double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
 		    bool fed, float *v2);
 
-/* Stands must save so much of the time, and at F they may cost so much. */
-#define PASS_WORTH	0.95
+/* Stands must save so much of the time. */
+#define PASS_WORTH	0.97
+
+/* Those that save so much may cost so much at F. */
+#define PASS_WORTH_COST	0.95
 #define PASS_COST	1.02
+
+/** pass_most_at_feed() - of the time without stands at F, what they may take
+ *  there that take @share of it without F. */
+static inline double pass_most_at_feed(double share)
+{
+	return share < PASS_WORTH_COST ? PASS_COST : 1;
+}
 
 /**
  * pass_stand_apart() - flag the corners between sides that are softer and
  * harder, where stands save time: each such side may be as soft as the axes
  * that turn on it, and one move over all of them is as soft as the softest.
  *
- * @room: for 2 * @to numbers
+ * @room: for 5 * @to numbers
  */
 void pass_stand_apart(struct pass *w, uint32_t from, uint32_t to, float *room);
 

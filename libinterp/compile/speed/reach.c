@@ -66,16 +66,40 @@ static float *reach(const struct pass *w)
 	return v2;
 }
 
+/*
+ * What the column of a bend goes by in a mm of segment @i at most; less than
+ * its windows show, if it turns in another place of them.  Kinematics make
+ * lines of a way that goes on bending between them.
+ */
+static double rate_on(struct pass *w, const struct bent_node *b, uint32_t i)
+{
+	const struct interp_seg *s = &w->segs[i];
+	const double off = pass_along_tol(w, w->ways.xyz);
+	double rate;
+
+	if (s->kind > INTERP_ARC || s->flags & INTERP_SEG_KNOWN)
+		return b->is.rate;
+	rate = fabs(pass_rate(w, i, b->column));
+	return smaller(b->is.rate,
+		       rate + (w->tol[b->column] +
+			       pass_off(w, b->column, off, rate)) /
+			       s->length_mm);
+}
+
 /* On a segment that is not short each column goes as it is written: it bends at
  * the node, not beside it. */
 static void soften_by(struct pass *w, const struct bent_node *b, double v_mm_s)
 {
-	struct leave left;
+	for (uint32_t i = b->before; i <= b->behind; i++) {
+		struct bent_node on = *b;
+		struct leave left;
 
-	pass_leave(w, b, v_mm_s, &left);
-	for (uint32_t i = b->before; i <= b->behind; i++)
-		if (pass_is_short(w, i))
-			pass_soften_segs(w, i, i, &left);
+		if (w->segs[i].kind >= INTERP_BEGIN || !pass_is_short(w, i))
+			continue;
+		on.is.rate = rate_on(w, b, i);
+		pass_leave(w, &on, v_mm_s, &left);
+		pass_soften_segs(w, i, i, &left);
+	}
 }
 
 /* How many of the first of @n begin at the same place; and where the last of

@@ -298,19 +298,19 @@ static bool may_pay(const struct stretches *w, uint32_t from, uint32_t to,
 struct tried {
 	uint32_t from, to;
 	float *room;			/* of pass_stand_apart() */
-	double least_s, fed_most_s;	/* stands must take less; also at F */
+	double none_s, fed_s;		/* without stands; also at F */
+	double least_s;			/* stands must take less */
 };
 
 /* Begin with no stands. */
 static bool try_none(struct stretches *w, struct tried *k)
 {
-	k->room = malloc((size_t)k->to * 2 * sizeof(*k->room));
+	k->room = malloc((size_t)k->to * 5 * sizeof(*k->room));
 	if (!k->room)
 		return false;
-	k->least_s = PASS_WORTH *
-		     pass_moves_s(w->pass, k->from, k->to, false, k->room);
-	k->fed_most_s = PASS_COST *
-			pass_moves_s(w->pass, k->from, k->to, true, k->room);
+	k->none_s = pass_moves_s(w->pass, k->from, k->to, false, k->room);
+	k->fed_s = pass_moves_s(w->pass, k->from, k->to, true, k->room);
+	k->least_s = PASS_WORTH * k->none_s;
 	return true;
 }
 
@@ -322,8 +322,9 @@ static bool is_best(struct stretches *w, struct tried *k)
 	if (!has_stands(w, k->from, k->to))
 		return false;
 	s = pass_moves_s(w->pass, k->from, k->to, false, k->room);
-	if (s >= k->least_s || pass_moves_s(w->pass, k->from, k->to, true,
-					    k->room) >= k->fed_most_s)
+	if (s >= k->least_s ||
+	    pass_moves_s(w->pass, k->from, k->to, true, k->room) >=
+		    pass_most_at_feed(s / k->none_s) * k->fed_s)
 		return false;
 	k->least_s = s;
 	return true;
