@@ -118,6 +118,26 @@ static void stand(struct way *w, uint64_t *s)
 	}
 }
 
+/* All axes go on and bend, tight and wide; those beside the path turn by @on
+ * degrees or so. */
+static void smooth(struct way *w, uint64_t *s)
+{
+	const double scale = pow(10, uniform(s, -1, 1));
+	const double on = pow(10, uniform(s, -1, 1)) * scale;
+
+	way_begin(w, s, 7);
+	for (uint32_t j = 0; j < COLUMNS; j++) {
+		const double by = j < w->counted ? scale : on;
+		double at = uniform(s, -5, 5), step = uniform(s, -by, by);
+
+		for (uint32_t i = 0; i < w->npoints; i++) {
+			w->points[i][j] = at;
+			step = step / 2 + uniform(s, -by, by);
+			at += step;
+		}
+	}
+}
+
 static struct made made_of(const struct way *w, double feed_mm_s)
 {
 	const struct interp_build_word word = {
@@ -231,6 +251,12 @@ static void where_it_stands_too(void **st)
 	try(stand);
 }
 
+static void where_it_bends_too(void **st)
+{
+	(void)st;
+	try(smooth);
+}
+
 /* Of the axes that count, by differences. */
 static double speed_of(const struct ring *k, const struct way *w)
 {
@@ -281,6 +307,7 @@ int main(void)
 			where_the_way_turns_back_every_axis_keeps_its_limits),
 		cmocka_unit_test(where_it_nearly_does_too),
 		cmocka_unit_test(where_it_stands_too),
+		cmocka_unit_test(where_it_bends_too),
 		cmocka_unit_test(no_curve_is_faster_than_f),
 	};
 

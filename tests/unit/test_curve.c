@@ -223,8 +223,9 @@ static void feed_is_lowest_where_the_curve_bends_most(void **state)
 		least = fmin(least, (double)m.p.segs[k].feed_max_mm_s);
 		most = fmax(most, (double)m.p.segs[k].feed_max_mm_s);
 	}
-	/* Radius 0.0231 mm at 1000 mm/s2 and 20000 mm/s3, 1 um in 1 ms. */
-	assert_true(least > 1 && least < sqrt(1000 * 0.0231));
+	/* Radius 0.0231 mm at 1000 mm/s2 and 20000 mm/s3, 1 um in 1 ms: the
+	 * slower the tips, the more is left to be fast behind them. */
+	assert_true(least > 0.3 && least < sqrt(1000 * 0.0231));
 	assert_true(most > 60);
 	unmake(&m);
 }
@@ -274,8 +275,9 @@ static void pieces_tell_which_way_they_go(void **state)
 			dot = last[0] * next[0] + last[1] * next[1];
 			assert_true(fabs(fabs(dot) - 1) < 1e-6);
 			back |= dot < 0;
-			/* What is smooth slows nothing; a cusp stops it. */
-			assert_true(dot > 0 ? m.p.segs[i].node_mm_s >= 0.9f *
+			/* What is smooth slows nothing, but for what cannot be
+			 * come to; a cusp stops it. */
+			assert_true(dot > 0 ? m.p.segs[i].node_mm_s >= 0.4f *
 				    fminf(m.p.segs[i].feed_max_mm_s,
 					  m.p.segs[i + 1].feed_max_mm_s) :
 				    m.p.segs[i].node_mm_s < 5);

@@ -9,6 +9,7 @@
 
 #include "interp/build.h"
 #include "interp/nurbs_feed.h"
+#include "path/builder.h"
 #include "pulse/pulse.h"
 
 /**
@@ -34,8 +35,23 @@ struct curve_seen {
 /* The feed that the axes allow at @u, how far each goes in a mm, and how that
  * changes by parameter; 0 at a cusp. */
 struct curve_look {
-	double u, mm_s;
+	double u, mm_s, by_u_mm;
 	double heading[INTERP_NAXES], turn[INTERP_NAXES];
+};
+
+#define BUILD_SLOWEST_BESIDE	0.05	/* of the slowest, at a cusp */
+#define BUILD_LOOKED		0.995	/* of what neighbouring looks allow,
+					 * between them */
+
+/* Of what the axes can do along a curve, what is kept for going along it.  The
+ * rest is for following it. */
+struct curve_share {
+	double a, j;			/* of the acceleration, of the jerk */
+};
+
+/* Along the path. */
+struct curve_go {
+	double a_mm_s2, j_mm_s3;
 };
 
 /* A NURBS while it is cut into segments. */
@@ -47,6 +63,8 @@ struct curve_plan {
 	struct interp_curve curve;	/* as stored */
 	const double *here_mm;		/* where the program stands */
 	struct interp_nurbs_limits limits;	/* of the axes, on bends */
+	const struct curve_share *share;	/* NULL: each place has its
+						 * own */
 	double chord_mm_s;		/* the fastest round a radius of 1 mm
 					 * within the chord error */
 	double pulses_mm[INTERP_NAXES];	/* of each axis */
@@ -58,16 +76,23 @@ struct curve_plan {
 	bool scouts;			/* only looks, adds no piece */
 	double beside_mm_s;		/* the least that axes beside the path
 					 * allow */
-	double a_mm_s2, j_mm_s3;		/* of the weakest axis */
+	double a_mm_s2, j_mm_s3;	/* of the weakest axis */
 	uint32_t moved, turns;
 	struct interp_curve_walk walk;
 	size_t mark;
 	double tried;			/* places so far */
 	/* The piece in hand: */
-	double from, least_mm_s, most_mm_s;
+	double from, least_mm_s, most_mm_s, piece_mm;
 	struct curve_look last;
 	struct curve_seen seen;
 };
+
+/* Of column @k. */
+static inline const struct interp_axis_limits *
+build_curve_axis(const struct curve_plan *p, uint32_t k)
+{
+	return &p->b->o.machine->axis[p->curve.axis[k]];
+}
 
 /** build_curve_refuse() - fill diag; -EINVAL. */
 int build_curve_refuse(struct curve_plan *p, const char *found,
@@ -122,6 +147,28 @@ double build_curve_rate(const struct curve_plan *p);
 
 /** build_curve_along() - how fast to speed up along it, at @v_mm_s at most. */
 void build_curve_along(const struct curve_plan *p, double v_mm_s,
+		       struct interp_piece *ret);
+
+/* build_curve_share.c: */
+
+/**
+ * build_share_choose() - find the share with which the curve is over earliest.
+ *
+ * A curve with a cusp has none.  Return: 0 or -ENOMEM.
+ */
+int build_share_choose(struct curve_plan *p);
+
+/**
+ * build_share_mm_s() - how fast its axes can follow it there with @share, mm/s.
+ *
+ * It is no cusp.
+ */
+double build_share_mm_s(const struct curve_plan *p,
+			const struct interp_nurbs_way *w,
+			const struct curve_share *share);
+
+/** build_share_along() - as build_curve_along(), where there is a share. */
+void build_share_along(const struct curve_plan *p, double v_mm_s,
 		       struct interp_piece *ret);
 
 #endif /* PATH_BUILD_CURVE_H */

@@ -14,15 +14,6 @@
 #define NEAR		0.1		/* between two looks feed and heading
 					 * change by no more */
 #define NEAR_HALVINGS	10
-#define SLOWEST_BESIDE	0.05		/* of the slowest, at a cusp */
-#define LOOKED		0.995		/* of what neighbouring looks allow,
-					 * between them */
-
-static const struct interp_axis_limits *axis_of(const struct curve_plan *p,
-						uint32_t k)
-{
-	return &p->b->o.machine->axis[p->curve.axis[k]];
-}
 
 /* Shares of an axis's acceleration: to follow the curve, and to go along it. */
 static double across_part(const struct curve_plan *p, uint32_t k)
@@ -49,7 +40,7 @@ void build_curve_limit(struct curve_plan *p)
 			sqrt(8 * o->chord_error_mm) / o->period_s : HUGE_VAL;
 	p->pulse_mm = HUGE_VAL;
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		const struct interp_axis_limits *m = axis_of(p, k);
+		const struct interp_axis_limits *m = build_curve_axis(p, k);
 
 		l->v_mm_s[k] = m->v_max_mm_s;
 		l->a_mm_s2[k] = across_part(p, k) * m->a_max_mm_s2;
@@ -92,7 +83,7 @@ static double set_off_mm_s(const struct curve_plan *p,
 		if (w->d[1][k] != 0)
 			v = fmin(v, interp_bend_mm_s(
 				INTERP_CURVE_JERK_BOTH *
-					axis_of(p, k)->j_max_mm_s3,
+					build_curve_axis(p, k)->j_max_mm_s3,
 				3 * fabs(w->d[1][k]), p->a_mm_s2, p->j_mm_s3));
 	return v;
 }
@@ -111,24 +102,34 @@ static double beside_mm_s(const struct curve_plan *p,
 	return v;
 }
 
+/* Where no share has been chosen for the whole curve. */
+static double alone_mm_s(struct curve_plan *p, const struct interp_nurbs_way *w)
+{
+	const double v = fmin(interp_nurbs_feed_mm_s(&p->walk.eval.c, w,
+						     &p->limits),
+			      set_off_mm_s(p, w, 0, p->curve.counted));
+	double beside;
+
+	if (p->curve.counted == p->curve.naxes)
+		return fmax(v, p->slowest_mm_s);
+	beside = beside_mm_s(p, w);
+	p->beside_mm_s = fmin(p->beside_mm_s, beside);
+	beside = fmax(w->cusp ? 0 : beside,
+		      BUILD_SLOWEST_BESIDE * p->slowest_mm_s);
+	return fmin(fmax(v, p->slowest_mm_s), beside);
+}
+
 struct curve_look build_curve_look(struct curve_plan *p, double u)
 {
 	struct interp_nurbs_eval *e = &p->walk.eval;
 	struct curve_look ret = { .u = u };
 	struct interp_nurbs_way w;
-	double v;
 
 	interp_nurbs_way(e, u, &w);
 	learn(p, &w);
-	v = fmin(interp_nurbs_feed_mm_s(&e->c, &w, &p->limits),
-		 set_off_mm_s(p, &w, 0, p->curve.counted));
-	ret.mm_s = fmax(v, p->slowest_mm_s);
-	if (p->curve.counted < p->curve.naxes) {
-		v = beside_mm_s(p, &w);
-		p->beside_mm_s = fmin(p->beside_mm_s, v);
-		v = fmax(w.cusp ? 0 : v, SLOWEST_BESIDE * p->slowest_mm_s);
-		ret.mm_s = fmin(ret.mm_s, v);
-	}
+	ret.mm_s = p->share && !w.cusp ? build_share_mm_s(p, &w, p->share) :
+					 alone_mm_s(p, &w);
+	ret.by_u_mm = w.by_u_mm;
 	if (w.cusp)
 		return ret;
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
@@ -237,7 +238,8 @@ double build_curve_rate(const struct curve_plan *p)
  */
 static double left_mm_s2(const struct curve_plan *p, uint32_t k, double v_mm_s)
 {
-	const double a = axis_of(p, k)->a_max_mm_s2, part = along_part(p, k);
+	const double a = build_curve_axis(p, k)->a_max_mm_s2;
+	const double part = along_part(p, k);
 	const double across = p->seen.bend * v_mm_s * v_mm_s;
 	const double left = a - p->seen.d[1][k] * v_mm_s * v_mm_s;
 
@@ -250,7 +252,7 @@ static double left_mm_s2(const struct curve_plan *p, uint32_t k, double v_mm_s)
 /* The same of its jerk. */
 static double left_mm_s3(const struct curve_plan *p, uint32_t k, double v_mm_s)
 {
-	const double j = axis_of(p, k)->j_max_mm_s3;
+	const double j = build_curve_axis(p, k)->j_max_mm_s3;
 
 	return fmax(j - p->seen.d[2][k] * v_mm_s * v_mm_s * v_mm_s,
 		    (1 - INTERP_CURVE_JERK_ROUND) * j);
@@ -263,6 +265,10 @@ void build_curve_along(const struct curve_plan *p, double v_mm_s,
 {
 	double a = HUGE_VAL, j = HUGE_VAL;
 
+	if (p->share) {
+		build_share_along(p, v_mm_s, ret);
+		return;
+	}
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
 		a = fmin(a, left_mm_s2(p, k, v_mm_s));
 		a = fmin(a, fmax(left_mm_s3(p, k, v_mm_s) / 2 /
@@ -276,6 +282,6 @@ void build_curve_along(const struct curve_plan *p, double v_mm_s,
 		j = fmin(j, fmax(left - 3 * p->seen.d[1][k] * v_mm_s * a,
 				 left / 2) / p->seen.d[0][k]);
 	}
-	ret->a_mm_s2 = LOOKED * a;
-	ret->j_mm_s3 = LOOKED * j;
+	ret->a_mm_s2 = BUILD_LOOKED * a;
+	ret->j_mm_s3 = BUILD_LOOKED * j;
 }
