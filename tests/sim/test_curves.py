@@ -102,6 +102,28 @@ def test_between_its_points_too_a_joined_curve_is_near_the_lines():
                for x, y, *_ in rows[::5]) < 0.0029
 
 
+WAYS = {
+    "a wave": lambda u: (40 * u, math.sin(40 * u)),
+    "a star": lambda u: ((8 + 3 * math.cos(10 * math.pi * u)) *
+                         math.cos(2 * math.pi * u) - 11,
+                         (8 + 3 * math.cos(10 * math.pi * u)) *
+                         math.sin(2 * math.pi * u)),
+    "an eight": lambda u: (10 * math.sin(2 * math.pi * u),
+                           5 * math.sin(4 * math.pi * u)),
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_curve_takes_little_longer_than_its_short_lines(way):
+    """It took 1.4 to 1.5 times as long."""
+    text = "F6000\n" + "".join("G1 X{:.4f} Y{:.4f}\n".format(
+        *WAYS[way](i / 5000)) for i in range(1, 5001))
+    lines, curve = (report("--dry-run", "--fit", fit,
+                           text=text)["virtual_s"]
+                    for fit in ("0", "1"))
+    assert curve < 1.2 * lines
+
+
 def test_two_thousand_lines_are_a_few_curves():
     count = {}
     for fit in "0", "1":

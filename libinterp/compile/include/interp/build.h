@@ -195,7 +195,7 @@ struct interp_build_curve {
  * within two pulses of here, to its last point.
  *
  * It becomes one or several segments.  A segment ends at a cusp or a corner,
- * and where the curve needs a much slower or faster feed.  Each segment gets
+ * and where the curve needs a slower or faster feed.  Each segment gets
  * the fastest feed that keeps the chord error and the limits of the axes.
  */
 int interp_build_curve(struct interp_build *b,
