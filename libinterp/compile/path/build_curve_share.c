@@ -7,7 +7,8 @@
  * earlier.  What is best depends on how often the curve bends, how tight, and
  * what its axes can do.  So the time that it takes is estimated for some
  * shares, from some places, and the best of them holds for the whole curve: a
- * move keeps the least acceleration and jerk of its way.
+ * move keeps the least acceleration and jerk of its way.  A curve for which
+ * this estimate would not hold has no share (build_curve_feed.c).
  */
 #include "path/build_curve.h"
 #include "path/builder.h"
@@ -17,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LOOKS		16		/* in a span */
+#define LOOKS		8		/* in a span */
 #define NEAR		1.25		/* look between speeds that differ by
 					 * more */
 #define HALVINGS	8
@@ -25,26 +26,31 @@
 					 * at */
 #define EVEN		0.6		/* least to mean of what its axes can
 					 * speed up by */
-#define MOVE_MM		2		/* a shorter curve is a part of a move
-					 * of that length */
+#define MOVE_MM		20		/* of curves that follow each other */
+#define JUMP_MM		1
+#define SHORT_MM	2		/* a shorter curve has no share */
+#define CHORDS		16
 
-/* The first ones are the best ones of most curves. */
 static const struct curve_share shares[] = {
-	{ 0.6, 0.45 }, { 0.6, 0.6 }, { 0.75, 0.45 }, { 0.75, 0.6 },
-	{ 0.9, 0.45 }, { 0.45, 0.45 }, { 0.3, 0.3 }, { 0.15, 0.2 },
-	{ 0.05, 0.1 },
+	{ 0.6, 0.45 }, { 0.75, 0.6 }, { 0.9, 0.45 }, { 0.45, 0.45 },
+	{ 0.3, 0.3 }, { 0.15, 0.2 }, { 0.05, 0.4 },
+	{ 0.2, 0.8 }, { 0.5, 0.7 }, { 0.7, 0.8 }, { 0.9, 0.9 },
 };
 
 #define NSHARES			(sizeof(shares) / sizeof(shares[0]))
 
 /* -- What a share allows ------------------------------------------------- */
 
-/* How fast a curve can be sped up along, where its axes go by @mm in a mm, and
- * do not bend: in whatever direction those go that count. */
+/*
+ * How fast a curve can be sped up along, where its axes go by @mm in a mm, and
+ * do not bend: in whatever direction those go that count.  From 0 to the speed v
+ * no move with the jerk j comes to more than sqrt(v * j).
+ */
 static struct curve_go can_go(const struct curve_plan *p,
 			      const double mm[INTERP_NAXES])
 {
 	struct curve_go ret = { HUGE_VAL, HUGE_VAL };
+	double v = 0;
 
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
 		const struct interp_axis_limits *m = build_curve_axis(p, k);
@@ -52,7 +58,10 @@ static struct curve_go can_go(const struct curve_plan *p,
 
 		ret.a_mm_s2 = fmin(ret.a_mm_s2, m->a_max_mm_s2 / d);
 		ret.j_mm_s3 = fmin(ret.j_mm_s3, m->j_max_mm_s3 / d);
+		if (k < p->curve.counted)
+			v += m->v_max_mm_s;
 	}
+	ret.a_mm_s2 = fmin(ret.a_mm_s2, sqrt(v * ret.j_mm_s3));
 	return ret;
 }
 
@@ -238,9 +247,13 @@ static void add_between(struct way *y, const struct look *a,
 			const struct look *b, int halvings)
 {
 	const float v = a->mm_s[0], w = b->mm_s[0];
+	const bool turns = interp_nurbs_dot(&y->p->walk.eval.c, a->heading,
+					    b->heading) < 0;
 	struct look middle;
 
-	if (halvings == 0 || fmaxf(v, w) <= (float)NEAR * fminf(v, w)) {
+	if (halvings == 0 ||
+	    (!turns && fmaxf(v, w) <= (float)NEAR * fminf(v, w))) {
+		y->turns_back |= turns;
 		add_place(y, a, b);
 		return;
 	}
@@ -266,8 +279,6 @@ static void add_places(struct way *y)
 			const struct look here = look_at(y, i < LOOKS ?
 				from + (to - from) * i / LOOKS : to);
 
-			y->turns_back |= interp_nurbs_dot(
-				&e->c, last.heading, here.heading) < 0;
 			add_between(y, &last, &here, HALVINGS);
 			last = here;
 		}
@@ -325,27 +336,41 @@ static double slope_mm_s2(const struct way *y, const struct curve_go *go)
 	return s > 0 ? rise / s : go->a_mm_s2;
 }
 
-static double time_s(struct way *y, size_t i, double most_mm_s)
+/* How fast it gets on @mm, from a stand and back to one, if nothing bends. */
+static double peak_mm_s(double mm, const struct curve_go *go)
 {
-	const struct curve_share *share = &shares[i];
-	const struct curve_go go = { share->a * y->can.a_mm_s2,
-				     share->j * y->can.j_mm_s3 };
+	const double a = go->a_mm_s2, j = go->j_mm_s3;
+
+	return fmin(sqrt(a * mm), cbrt(j * mm * mm / 4));
+}
+
+/* From a stand to a stand over @mm, along a curve that goes on like this one,
+ * with share @i, no faster than @most_mm_s. */
+static double time_s(struct way *y, size_t i, double mm, double most_mm_s)
+{
+	const struct curve_go go = { shares[i].a * y->can.a_mm_s2,
+				     shares[i].j * y->can.j_mm_s3 };
+	const double most = fmin(most_mm_s, peak_mm_s(mm, &go));
 	const struct place *q = y->places.at;
 	double s = 0;
 
-	run(y, i, most_mm_s, go.a_mm_s2);
-	run(y, i, most_mm_s, slope_mm_s2(y, &go));
+	run(y, i, most, go.a_mm_s2);
+	run(y, i, most, slope_mm_s2(y, &go));
 	for (size_t k = 0; k < y->places.n; k++)
 		s += q[k].mm / sqrt(y->v2[k]);
-	return s * fmax(1, MOVE_MM / y->mm) + ramp_s(y->mm / s, &go);
+	return s * mm / y->mm + ramp_s(y->mm / s, &go);
 }
 
-/* Jumps and positionings know no F; dry runs and cuts do.  Both count. */
+/* The product of what moves take: of the curve alone, of one that has more such
+ * curves, of a jump; and at F, which only dry runs and cuts know. */
 static double cost(struct way *y, size_t i)
 {
 	const double f = y->p->feed_mm_s;
 
-	return time_s(y, i, HUGE_VAL) * (f > 0 ? time_s(y, i, f) : 1);
+	return time_s(y, i, y->mm, HUGE_VAL) *
+	       time_s(y, i, fmax(y->mm, MOVE_MM), HUGE_VAL) *
+	       time_s(y, i, JUMP_MM, HUGE_VAL) *
+	       (f > 0 ? time_s(y, i, y->mm, f) : 1);
 }
 
 /* Where the path turns back, or an axis beside it turns much farther in some mm
@@ -357,12 +382,35 @@ static bool is_even(const struct way *y)
 	       y->can.a_mm_s2 * y->by_a > EVEN * y->mm;
 }
 
+/* What moves a short curve is a part of is not known. */
+static bool is_short(const struct curve_plan *p)
+{
+	const struct interp_nurbs_eval *e = &p->walk.eval;
+	struct interp_nurbs_eval here = *e;
+	const double first = interp_nurbs_first(&e->c);
+	const double by = (interp_nurbs_last(&e->c) - first) / CHORDS;
+	struct interp_nurbs_point a, b;
+	double mm = 0;
+
+	interp_nurbs_at(&here, first, 0, &a);
+	for (int i = 1; i <= CHORDS && mm < SHORT_MM; i++) {
+		interp_nurbs_at(&here, first + i * by, 0, &b);
+		for (uint32_t k = 0; k < p->curve.counted; k++)
+			mm += fabs(b.d[0][k] - a.d[0][k]);
+		a = b;
+	}
+	return mm < SHORT_MM;
+}
+
 int build_share_choose(struct curve_plan *p)
 {
 	struct way y = { .p = p, .places.size = sizeof(struct place),
 			 .can = { HUGE_VAL, HUGE_VAL } };
 	double least = HUGE_VAL;
 
+
+	if (is_short(p))
+		return 0;
 	add_places(&y);
 	y.v2 = malloc((y.places.n + 1) * sizeof(*y.v2));
 	if (!y.v2)
