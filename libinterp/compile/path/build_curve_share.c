@@ -43,8 +43,8 @@ static const struct curve_share shares[] = {
 
 /*
  * How fast a curve can be sped up along, where its axes go by @mm in a mm, and
- * do not bend: in whatever direction those go that count.  From 0 to the speed v
- * no move with the jerk j comes to more than sqrt(v * j).
+ * do not bend: in whatever direction those go that count.  From 0 to the speed
+ * v no move with the jerk j comes to more than sqrt(v * j).
  */
 static struct curve_go can_go(const struct curve_plan *p,
 			      const double mm[INTERP_NAXES])
