@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from edmsim import PROGRAM, ROOT
+from edmsim import HANGS_S, PROGRAM, ROOT
 
 BUILD = PROGRAM[:-len("edmsim")]
 PROGRAMS = ("edmctl", "edmsim", "edmd", "edmd-jobs", "edm-dds", "edm-fleet",
@@ -15,7 +15,7 @@ PROGRAMS = ("edmctl", "edmsim", "edmd", "edmd-jobs", "edm-dds", "edm-fleet",
 def completion(shell, *names):
     return subprocess.run(
         [ROOT / "packaging/completion", shell, *(BUILD + n for n in names)],
-        capture_output=True, text=True, check=True, timeout=60).stdout
+        capture_output=True, text=True, check=True, timeout=HANGS_S).stdout
 
 
 def offered(words):

@@ -9,7 +9,7 @@ import re
 import subprocess
 
 import pytest
-from edmsim import PROGRAM, report, run
+from edmsim import HANGS_S, PROGRAM, report, run
 
 EDMCTL = os.path.join(os.path.dirname(PROGRAM), "edmctl")
 AXES = "XYZABCUV"
@@ -76,7 +76,7 @@ def curve(n=6000):
 
 def identify(*args):
     return subprocess.run([EDMCTL, "identify", *map(str, args)],
-                          capture_output=True, text=True, timeout=100)
+                          capture_output=True, text=True, timeout=HANGS_S)
 
 
 def test_a_noisy_trace_tells_the_loops(tmp_path):
@@ -209,7 +209,7 @@ def test_of_a_trace_without_end_the_first_rows_are_used(tmp_path):
     awk = subprocess.Popen(["awk", "-v", "h=" + HEADING, script],
                            stdout=subprocess.PIPE)
     r = subprocess.run([EDMCTL, "identify", "/dev/stdin"], stdin=awk.stdout,
-                       capture_output=True, text=True, timeout=100)
+                       capture_output=True, text=True, timeout=HANGS_S)
     awk.kill()
     awk.wait()
     assert r.returncode == 65
@@ -391,7 +391,7 @@ def test_what_the_cycle_has_not_is_refused_where_it_leads(tmp_path, method,
     assert told in r.stderr.decode()
     edmd = os.path.join(os.path.dirname(PROGRAM), "edmd")
     r = subprocess.run([edmd, "--config", str(tmp_path / "m.ini"), "--check"],
-                       capture_output=True, text=True, timeout=20)
+                       capture_output=True, text=True, timeout=HANGS_S)
     assert r.returncode == 78
     line = 1 + (tmp_path / "m.ini").read_text().splitlines().index(
         f"method = {method}")

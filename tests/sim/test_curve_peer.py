@@ -6,7 +6,7 @@ import subprocess
 
 from geomdl import NURBS
 
-from edmsim import ROOT
+from edmsim import HANGS_S, ROOT
 
 PEER = ROOT / os.environ.get("EDM_BUILD", "build") / "peer"
 CURVES = 100000
@@ -18,7 +18,7 @@ def peer(name):
     r = subprocess.run([str(PEER / name), str(CURVES),
                         os.environ.get("EDM_SEED") or
                         str(random.randrange(1 << 32))],
-                       capture_output=True, text=True, check=True, timeout=300)
+                       capture_output=True, text=True, check=True, timeout=HANGS_S)
     return r.stdout
 
 

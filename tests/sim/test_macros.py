@@ -7,7 +7,7 @@ import re
 import subprocess
 
 import pytest
-from edmsim import PROGRAM, ROOT, done, run, seeded
+from edmsim import HANGS_S, PROGRAM, ROOT, done, run, seeded
 from rs274 import canonical_calls, peer
 
 MACROS = ROOT / "tests/data/macros"
@@ -25,7 +25,7 @@ def ours(path, dialect):
     """The same, of what edmsim reads; words that do not change are missing."""
     out = subprocess.run([PROGRAM, "--dialect", dialect, "--emit", "iso",
                           str(path)], capture_output=True, text=True,
-                         timeout=100)
+                         timeout=HANGS_S)
     assert out.returncode == 0, out.stderr
     at, ends = [0.0] * 6, []
     for line in out.stdout.splitlines():

@@ -5,7 +5,7 @@ import shutil
 import subprocess
 
 import pytest
-from edmsim import STRATEGIES, done
+from edmsim import HANGS_S, STRATEGIES, done
 
 SEGMENTS = 1000000
 
@@ -40,7 +40,7 @@ def test_a_million_segments_to_and_fro_pulse_for_pulse(tmp_path, strategy):
     done("--dry-run", "--there-and-back", "--strategy", strategy,
          "--pulses", tmp_path / "p.csv", tmp_path / "job.ngc")
     r = subprocess.run(["sh", "-c", COMPARE, "sh", "p.csv"], cwd=tmp_path,
-                       capture_output=True, text=True, timeout=120)
+                       capture_output=True, text=True, timeout=HANGS_S)
     assert r.returncode == 0, r.stdout + r.stderr
     assert int(r.stdout) > 1.8 * SEGMENTS
     shutil.rmtree(tmp_path)

@@ -12,7 +12,7 @@ import re
 import subprocess
 
 import pytest
-from edmsim import PROGRAM, seeded
+from edmsim import HANGS_S, PROGRAM, seeded
 from rs274 import canonical_calls, peer
 
 PROGRAMS = 12
@@ -175,7 +175,7 @@ def ends_of_edmsim(tmp_path, text, motions):
         last = subprocess.run(
             ["awk", "-F,", "NR > 1 { at[$2] = $3 \" \" $4 \" \" $5 } "
              "END { for (n in at) print n, at[n] }"],
-            stdin=p.stdout, capture_output=True, text=True, timeout=60).stdout
+            stdin=p.stdout, capture_output=True, text=True, timeout=HANGS_S).stdout
     assert p.returncode == 0
     place = {}
     for row in last.splitlines():

@@ -7,7 +7,7 @@ import re
 import subprocess
 
 import pytest
-from edmsim import PROGRAM, run
+from edmsim import HANGS_S, PROGRAM, run
 
 FORM = re.compile(r"^(?P<file>[^\n]*):(?P<line>\d+):(?P<column>\d+): error: "
                   r"(?P<found>[^\n]+?); (?P<wanted>[^\n]+)\n$")
@@ -204,7 +204,7 @@ def test_a_file_that_is_no_database_is_set_aside_and_kept(tmp_path):
                          stderr=subprocess.PIPE, text=True)
     told = next(line for line in p.stderr if "kept as" in line)
     p.terminate()
-    p.communicate(timeout=60)
+    p.communicate(timeout=HANGS_S)
     assert p.returncode == 0
     assert not list(pathlib.Path("/dev/shm").glob("edmd.garbage.*"))
     assert "0 jobs were recovered" in told

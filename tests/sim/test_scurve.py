@@ -4,7 +4,7 @@ import os
 import subprocess
 
 import ruckig
-from edmsim import ROOT, seeded
+from edmsim import HANGS_S, ROOT, seeded
 
 PLANNER = str(ROOT / os.environ.get("EDM_BUILD", "build") / "peer" / "scurve")
 CASES = 10000
@@ -39,7 +39,7 @@ def ours(cases):
     text = "".join(" ".join([c[0], *map(repr, map(float, c[1:]))]) + "\n"
                    for c in cases)
     r = subprocess.run([PLANNER], input=text, capture_output=True, text=True,
-                       check=True, timeout=60)
+                       check=True, timeout=HANGS_S)
     return list(map(float, r.stdout.split()))
 
 

@@ -13,7 +13,7 @@ import subprocess
 
 import pytest
 
-from edmsim import PROGRAM, ROOT, done, run
+from edmsim import HANGS_S, PROGRAM, ROOT, done, run
 
 EXAMPLES = ROOT / "examples"
 JOBS = [("machine.ini", "cavity"), ("machine.ini", "orbit"),
@@ -182,7 +182,7 @@ def test_random_answers_become_files_that_edmd_takes_or_are_told(tmp_path):
         p = new_machine(path, answers + 30 * [""])
         good = subprocess.run(
             [PROGRAM, "--machine", path, "--print-config"],
-            capture_output=True, timeout=60).returncode == 0
+            capture_output=True, timeout=HANGS_S).returncode == 0
         assert p.returncode == (0 if good else 78), p.stderr
         seen.add(good)
         path.unlink()

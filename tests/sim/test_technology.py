@@ -6,7 +6,7 @@ import subprocess
 
 import edmsim
 import pytest
-from edmsim import PROGRAM, ROOT
+from edmsim import HANGS_S, PROGRAM, ROOT
 
 MACHINE = str(ROOT / "examples/machine.ini")
 JOB = b"G21 G90\nG0 Z1\nZ0\nC120 G1 Z-0.3 F30\nM2\n"
@@ -115,7 +115,7 @@ def test_edmd_checks_the_files_that_its_machine_file_names(tmp_path):
         path.write_text("[machine]\nname = m\n" + text)
         p = subprocess.run([PROGRAM.replace("edmsim", "edmd"), "--config",
                             str(path), "--check"], capture_output=True,
-                           text=True, timeout=20)
+                           text=True, timeout=HANGS_S)
         assert ("good" in p.stdout) == (p.returncode == 0)
         return p.returncode, p.stderr
 
@@ -136,7 +136,7 @@ def test_edmd_says_that_it_cannot_read_a_pipe_twice():
     p = subprocess.run([PROGRAM.replace("edmsim", "edmd"), "--config",
                         "/dev/stdin", "--check"], capture_output=True,
                        input="[machine]\nname = m\n[tech]\ntable = no.tech\n",
-                       text=True, timeout=20)
+                       text=True, timeout=HANGS_S)
     assert p.returncode == 0
     assert "were not read: it is not a file that can be read twice" in p.stdout
 

@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 
-from edmsim import PROGRAM, ROOT, run
+from edmsim import HANGS_S, PROGRAM, ROOT, run
 
 MACHINE = (ROOT / "examples/machine.ini").read_text()
 CAVITY = ROOT / "examples/cavity.ngc"
@@ -23,7 +23,7 @@ def with_keys(path, **keys):
 
 def said(*args):
     return subprocess.run([PROGRAM, *map(str, args)], capture_output=True,
-                          text=True, timeout=170)
+                          text=True, timeout=HANGS_S)
 
 
 def test_a_servo_that_hunts_says_so_and_what_to_change(tmp_path):

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from edmsim import PROGRAM, ROOT, run
+from edmsim import HANGS_S, PROGRAM, ROOT, run
 
 WORK = ROOT / "tests/experiments/conditions/deep-poor-flushing.ini"
 JOB = ROOT / "tests/experiments/sink.ngc"
@@ -79,7 +79,7 @@ def test_an_interrupt_prints_the_best_so_far():
         if b"20 of 5000" in line:
             break
     p.send_signal(signal.SIGINT)
-    out = p.communicate(timeout=60)[0].decode()
+    out = p.communicate(timeout=HANGS_S)[0].decode()
     assert p.returncode == 1
     assert "interrupted" in out
     assert "servo_v" in out and "[gap]" in out
