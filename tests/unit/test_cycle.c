@@ -136,6 +136,18 @@ static void a_short_that_stays_is_a_fault_after_limit_and_wait(void **st)
 	rig_free(&r);
 }
 
+/* It cuts a little, and a short takes it back to where its path starts. */
+static void back_to_the_start(struct rig *r, struct interp_build *b,
+			      const struct cycle_config *k)
+{
+	rig_load(r, b, k);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+	cut_until(r, 0.1);
+	steps(r, SHORTED_V, 60);
+	assert_int_equal(r->c.state, STATE_RETRACT);
+	assert_int_equal(r->out.target[INTERP_Z], 0);
+}
+
 static void it_goes_back_no_farther_than_the_start_of_the_path(void **st)
 {
 	const struct cycle_config k = usual_config();
@@ -144,13 +156,8 @@ static void it_goes_back_no_farther_than_the_start_of_the_path(void **st)
 
 	(void)st;
 	cut_to(b, -5);
-	rig_load(&r, b, &k);
-	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
-	cut_until(&r, 0.1);
-	steps(&r, SHORTED_V, 60);
-	assert_int_equal(r.c.state, STATE_RETRACT);
+	back_to_the_start(&r, b, &k);
 	assert_near(place(&r), 0, 2e-9);
-	assert_int_equal(r.out.target[INTERP_Z], 0);
 	until(&r, STATE_FAULT, SHORTED_V, 60);
 	assert_int_equal(r.c.fault.first, FAULT_RETRACT_AT_START);
 	rig_free(&r);
@@ -168,12 +175,7 @@ static void at_the_start_it_does_not_spark_in_front_of_a_positioning(void **st)
 	action(b, INTERP_DWELL, 0);
 	rapid_to(b, -0.05);
 	cut_to(b, -5);
-	rig_load(&r, b, &k);
-	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
-	cut_until(&r, 0.1);
-	steps(&r, SHORTED_V, 60);
-	assert_int_equal(r.c.state, STATE_RETRACT);
-	assert_int_equal(r.out.target[INTERP_Z], 0);
+	back_to_the_start(&r, b, &k);
 	/* A walk back may end at the program's begin itself, and go on only
 	 * when the machine takes points again. */
 	assert_int_equal(interp_cursor_seek(&r.c.cursor, 0, 0), 0);

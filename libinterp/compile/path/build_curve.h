@@ -32,8 +32,8 @@ struct curve_seen {
 					 * column */
 };
 
-/* The feed that the axes allow at @u, how far each goes in a mm, and how that
- * changes by parameter; 0 at a cusp. */
+/* The feed that the axes allow at @u, the length by parameter there, how far
+ * each axis goes in a mm, and how that changes by parameter; 0 at a cusp. */
 struct curve_look {
 	double u, mm_s, by_u_mm;
 	double heading[INTERP_NAXES], turn[INTERP_NAXES];
@@ -63,8 +63,9 @@ struct curve_plan {
 	struct interp_curve curve;	/* as stored */
 	const double *here_mm;		/* where the program stands */
 	struct interp_nurbs_limits limits;	/* of the axes, on bends */
-	const struct curve_share *share;	/* NULL: each place has its
-						 * own */
+	const struct curve_share *share;	/* of the whole curve; NULL:
+						 * fixed ones, which
+						 * build_curve_feed.c has */
 	double chord_mm_s;		/* the fastest round a radius of 1 mm
 					 * within the chord error */
 	double pulses_mm[INTERP_NAXES];	/* of each axis */
@@ -82,7 +83,8 @@ struct curve_plan {
 	size_t mark;
 	double tried;			/* places so far */
 	/* The piece in hand: */
-	double from, least_mm_s, most_mm_s, piece_mm;
+	double from, least_mm_s, most_mm_s;
+	double piece_mm;		/* its length so far */
 	struct curve_look last;
 	struct curve_seen seen;
 };
@@ -154,7 +156,10 @@ void build_curve_along(const struct curve_plan *p, double v_mm_s,
 /**
  * build_share_choose() - find the share with which the curve is over earliest.
  *
- * A curve with a cusp has none.  Return: 0 or -ENOMEM.
+ * It is estimated for the curve alone, for a longer way of such curves, for a
+ * jump, and at F; the least product is chosen.  There is no share, p->share is
+ * NULL, for a curve that is short or has a cusp, and for one whose axes beside
+ * the path turn much farther in some mm than in others.  Return: 0 or -ENOMEM.
  */
 int build_share_choose(struct curve_plan *p);
 

@@ -12,6 +12,7 @@
  */
 #include "path/build_curve.h"
 #include "path/builder.h"
+#include "speed/ramp.h"
 
 #include <errno.h>
 #include <math.h>
@@ -76,8 +77,8 @@ static struct curve_go keep(const struct curve_plan *p,
 				   share->j * can.j_mm_s3 };
 }
 
-/* The v with @cubic v^3 + @linear v = @all, all of them 0 at least; no less,
- * and more by a millionth at most. */
+/* The v with @cubic v^3 + @linear v = @all; none of them is negative.  It is
+ * never too little, and too much by a millionth at most. */
 static double root(double cubic, double linear, double all)
 {
 	double v = fmin(cbrt(all / cubic), all / linear);
@@ -286,14 +287,6 @@ static void add_places(struct way *y)
 	}
 }
 
-/* How long it takes to get faster by @v_mm_s. */
-static double ramp_s(double v_mm_s, const struct curve_go *go)
-{
-	const double a = go->a_mm_s2, j = go->j_mm_s3;
-
-	return v_mm_s * j >= a * a ? v_mm_s / a + a / j : 2 * sqrt(v_mm_s / j);
-}
-
 /* The speeds with share @i up to @most_mm_s, and with an acceleration of
  * @a_mm_s2, forward and back. */
 static void run(struct way *y, size_t i, double most_mm_s, double a_mm_s2)
@@ -329,19 +322,11 @@ static double slope_mm_s2(const struct way *y, const struct curve_go *go)
 			const double by = sqrt(high) - sqrt(low);
 
 			rise += by;
-			s += ramp_s(by, go);
+			s += ramp_s(by, go->a_mm_s2, go->j_mm_s3);
 		}
 		low = high = v2;
 	}
 	return s > 0 ? rise / s : go->a_mm_s2;
-}
-
-/* How fast it gets on @mm, from a stand and back to one, if nothing bends. */
-static double peak_mm_s(double mm, const struct curve_go *go)
-{
-	const double a = go->a_mm_s2, j = go->j_mm_s3;
-
-	return fmin(sqrt(a * mm), cbrt(j * mm * mm / 4));
 }
 
 /* From a stand to a stand over @mm, along a curve that goes on like this one,
@@ -350,7 +335,8 @@ static double time_s(struct way *y, size_t i, double mm, double most_mm_s)
 {
 	const struct curve_go go = { shares[i].a * y->can.a_mm_s2,
 				     shares[i].j * y->can.j_mm_s3 };
-	const double most = fmin(most_mm_s, peak_mm_s(mm, &go));
+	const double most = fmin(most_mm_s, ramp_rise_mm_s(
+					    mm, go.a_mm_s2, go.j_mm_s3));
 	const struct place *q = y->places.at;
 	double s = 0;
 
@@ -358,7 +344,7 @@ static double time_s(struct way *y, size_t i, double mm, double most_mm_s)
 	run(y, i, most, slope_mm_s2(y, &go));
 	for (size_t k = 0; k < y->places.n; k++)
 		s += q[k].mm / sqrt(y->v2[k]);
-	return s * mm / y->mm + ramp_s(y->mm / s, &go);
+	return s * mm / y->mm + ramp_s(y->mm / s, go.a_mm_s2, go.j_mm_s3);
 }
 
 /* The product of what moves take: of the curve alone, of one that has more such
@@ -407,7 +393,6 @@ int build_share_choose(struct curve_plan *p)
 	struct way y = { .p = p, .places.size = sizeof(struct place),
 			 .can = { HUGE_VAL, HUGE_VAL } };
 	double least = HUGE_VAL;
-
 
 	if (is_short(p))
 		return 0;

@@ -9,9 +9,9 @@
  * and what it comes to between them.
  */
 #include "speed/pass.h"
+#include "speed/ramp.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Segments @from up to, but not with, @to. */
 struct move {
@@ -33,37 +33,6 @@ static double ceiling_mm_s(const struct interp_seg *s, bool fed)
 			      s->feed_max_mm_s);
 }
 
-/* What is left of acceleration @a, in the mean of a ramp to @v. */
-static double slope_mm_s2(double v, double a, double j)
-{
-	return v * j >= a * a ? v / (v / a + a / j) : sqrt(v * j) / 2;
-}
-
-/* The cube root of @x >= 0, within 10^-5 of it: near enough for a time that is
- * an estimate, and it costs a tenth of cbrt().  A third of the bits of a float
- * is within 4 %. */
-static double root3(double x)
-{
-	const float near = (float)x;
-	uint32_t bits;
-	double y;
-	float f;
-
-	memcpy(&bits, &near, sizeof(bits));
-	bits = bits / 3 + 709921077;
-	memcpy(&f, &bits, sizeof(f));
-	y = (double)f;
-	y = (2 * y + x / (y * y)) / 3;
-	return (2 * y + x / (y * y)) / 3;
-}
-
-/* How much faster it gets on @mm, from a stand and back to one. */
-static double rise_mm_s(double mm, double a, double j)
-{
-	return 16 * a * a * a < j * j * mm ? sqrt(a * mm) :
-					     root3(j * mm * mm / 4);
-}
-
 /* A node is slow if it is passed no faster than this share of what its sides
  * come to. */
 #define SLOW	0.5
@@ -82,8 +51,8 @@ static double comes_to_mm_s(const struct interp_seg *s, const struct move *m,
 	v = smaller(top, node + sqrt(m->a_mm_s2 * s->length_mm));
 	if (smaller(from, to) >= SLOW * v)
 		return v;
-	return smaller(v, node + rise_mm_s(s->length_mm, m->a_mm_s2,
-					   m->j_mm_s3));
+	return smaller(v, node + ramp_rise_mm_s(s->length_mm, m->a_mm_s2,
+						m->j_mm_s3));
 }
 
 /* Between two slow nodes. */
@@ -96,10 +65,11 @@ struct hop {
 static double hop_rise_mm_s(const struct hop *k, const struct move *m)
 {
 	const double v = k->mm / k->s, node = k->node_mm_s;
-	const double rise = rise_mm_s(k->mm, m->a_mm_s2, m->j_mm_s3);
+	const double rise = ramp_rise_mm_s(k->mm, m->a_mm_s2, m->j_mm_s3);
 	const double share = rise / (rise + 2 * node);
 
-	return smaller(larger(v - node, SLOW * v), rise * root3(share * share));
+	return smaller(larger(v - node, SLOW * v),
+		       rise * ramp_root3(share * share));
 }
 
 /* What the jerk leaves in the mean of the ramps of move @m: between slow nodes
@@ -131,7 +101,8 @@ static double move_slope_mm_s2(const struct interp_seg *segs,
 		s += t;
 		hop = (struct hop) { 0, 0, to / 2 };
 	}
-	return s > 0 ? slope_mm_s2(sum / s, m->a_mm_s2, m->j_mm_s3) : INFINITY;
+	return s > 0 ? ramp_slope_mm_s2(sum / s, m->a_mm_s2, m->j_mm_s3) :
+		       INFINITY;
 }
 
 /* Up to the next stand. */
@@ -153,7 +124,7 @@ static struct move next_move(const struct pass *w, uint32_t from, uint32_t to,
 		ret.j_mm_s3 = smaller(ret.j_mm_s3, (double)k->j_mm_s3);
 		mm += k->length_mm;
 	} while (ret.to < to && !(segs[ret.to - 1].flags & INTERP_SEG_STAND));
-	ret.most_mm_s = rise_mm_s(mm, ret.a_mm_s2, ret.j_mm_s3);
+	ret.most_mm_s = ramp_rise_mm_s(mm, ret.a_mm_s2, ret.j_mm_s3);
 	ret.slope_mm_s2 = move_slope_mm_s2(segs, &ret);
 	return ret;
 }
