@@ -67,3 +67,34 @@ int interp_diag_say(struct interp_diag *d, const char *format, ...)
 		 (int)sizeof(d->wanted) - 1, n < strlen(all) ? all + n : "");
 	return -EINVAL;
 }
+
+#define PLACE_MAX	32
+
+/* Behind the name of a file. */
+static void put_place(const struct interp_diag *d, char to[PLACE_MAX])
+{
+	to[0] = '\0';
+	if (d->line > 0 && d->column > 0)
+		snprintf(to, PLACE_MAX, ":%u:%u", d->line, d->column);
+	else if (d->line > 0)
+		snprintf(to, PLACE_MAX, ":%u", d->line);
+}
+
+void interp_diag_full(const struct interp_diag *d, const char *file, char *to,
+		      size_t size)
+{
+	char place[PLACE_MAX];
+
+	put_place(d, place);
+	snprintf(to, size, "%s%s: error: %s; %s", file, place, d->found,
+		 d->wanted);
+}
+
+void interp_diag_tell(const struct interp_diag *d, const char *file)
+{
+	char place[PLACE_MAX];
+
+	put_place(d, place);
+	fprintf(stderr, "%s%s: error: %s; %s\n", file, place, d->found,
+		d->wanted);
+}

@@ -367,7 +367,7 @@ static int judge(const char *path)
 	const int err = config_read(&config, path, &diag);
 
 	if (err == -EINVAL) {
-		config_say(path, &diag);
+		interp_diag_tell(&diag, path);
 		fprintf(stderr, "edmctl: %s is written; mend that line before "
 			"edmd takes it\n", path);
 		return EX_CONFIG;

@@ -58,7 +58,7 @@ static int take_config(void *to, const char *path)
 	const int err = config_read(&config, path, &d);
 
 	if (err == -EINVAL)
-		config_say(path, &d);
+		interp_diag_tell(&d, path);
 	else if (err < 0)
 		fprintf(stderr, "edm-dds: error: %s: %s; a machine file\n",
 			path, strerror(-err));

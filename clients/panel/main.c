@@ -284,7 +284,7 @@ static int read_config(struct panel *p, const struct panel_options *o)
 	const int err = config_read(&p->config, o->config, &d);
 
 	if (err == -EINVAL) {
-		config_say(o->config, &d);
+		interp_diag_tell(&d, o->config);
 		return EX_CONFIG;
 	}
 	if (err < 0) {

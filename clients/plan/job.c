@@ -25,7 +25,7 @@ static int load_machine(struct job *j)
 	if (path)
 		err = config_read(&j->config, path, &d);
 	if (err == -EINVAL) {
-		config_say(path, &d);
+		interp_diag_tell(&d, path);
 		return EX_CONFIG;
 	}
 	if (err < 0) {
@@ -35,7 +35,7 @@ static int load_machine(struct job *j)
 	}
 	err = config_kinematics(&j->config, &j->kin, &d);
 	if (err == -EINVAL) {
-		config_say(path, &d);
+		interp_diag_tell(&d, path);
 		return EX_CONFIG;
 	}
 	if (err == -ENOENT) {

@@ -289,9 +289,7 @@ static int compile(struct route *w, const struct machine_config *c,
 	err = b ? interp_compile(text, &of.text, b, &w->lines, &diag) : -ENOMEM;
 	if (err == -EINVAL) {
 		if (!from->quiet)
-			fprintf(stderr, "%s:%u:%u: error: %s; %s\n", from->path,
-				diag.line, diag.column, diag.found,
-				diag.wanted);
+			interp_diag_tell(&diag, from->path);
 		err = EX_DATAERR;
 	} else {
 		err = err ? EX_OSERR : lay_out(b, from, w);

@@ -54,8 +54,7 @@ static int write_to(const struct interp_sink *to, const struct sim_job *job,
 	else
 		r = interp_iso_write(&job->program, to, &d);
 	if (r == -EINVAL)
-		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", o->job, d.line,
-			d.column, d.found, d.wanted);
+		interp_diag_tell(&d, o->job);
 	return r;
 }
 

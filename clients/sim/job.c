@@ -56,12 +56,6 @@ static int text_load(const char *path, struct text *t)
 	return err;
 }
 
-static void say_refusal(const char *path, const struct interp_diag *d)
-{
-	fprintf(stderr, "%s:%u:%u: error: %s; %s\n", path, d->line, d->column,
-		d->found, d->wanted);
-}
-
 /* All refusals of a text, for --check. */
 struct refusals {
 	const char *path;		/* NULL: they are only counted */
@@ -74,7 +68,7 @@ static void say_one(void *arg, const struct interp_diag *d)
 
 	all->n++;
 	if (all->path)
-		say_refusal(all->path, d);
+		interp_diag_tell(d, all->path);
 }
 
 /* Enough to see whether a dialect accepts a text. */
@@ -223,7 +217,7 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	free(t->at);
 	t->at = NULL;
 	if (err == -EINVAL && all.n == 0)
-		say_refusal(o->job, &diag);
+		interp_diag_tell(&diag, o->job);
 	err = err == 0 ? lay_out(job, b, o->job) :
 	    err == -EINVAL ? EX_DATAERR : EX_OSERR;
 	interp_build_destroy(b);

@@ -50,7 +50,7 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	if (err == 0 && c->sim.loops && !o->tune)
 		err = config_check_contouring(c, &d);
 	if (err == -EINVAL) {
-		config_say(o->machine_file, &d);
+		interp_diag_tell(&d, o->machine_file);
 		return EX_CONFIG;
 	}
 	if (err < 0) {

@@ -18,9 +18,7 @@ int edmsim_tech_load(struct config_tech *ret, const struct sim_options *o,
 	if (err == 0)
 		return 0;
 	if (err == -EINVAL && ret->diag.line) {
-		fprintf(stderr, "%s:%u:%u: error: %s; %s\n", ret->path,
-			ret->diag.line, ret->diag.column, ret->diag.found,
-			ret->diag.wanted);
+		interp_diag_tell(&ret->diag, ret->path);
 		return EX_CONFIG;
 	}
 	fprintf(stderr, "edmsim: %s: %s; a technology table\n", ret->path,

@@ -97,9 +97,7 @@ void config_dialect_why(const struct config_dialect *d, int err, char *buf,
 	if (err != -EINVAL)
 		snprintf(buf, size, "dialect %s: %s", d->path, strerror(-err));
 	else if (d->diag.line)
-		snprintf(buf, size, "%s:%u:%u: error: %s; %s", d->path,
-			 d->diag.line, d->diag.column, d->diag.found,
-			 d->diag.wanted);
+		interp_diag_full(&d->diag, d->path, buf, size);
 	else
 		snprintf(buf, size, "dialect %s: %s; %s", d->path,
 			 d->diag.found, d->diag.wanted);

@@ -115,9 +115,7 @@ void config_tech_why(const struct config_tech *t, int err, char *buf,
 		     size_t size)
 {
 	if (err == -EINVAL)
-		snprintf(buf, size, "%s:%u:%u: error: %s; %s", t->path,
-			 t->diag.line, t->diag.column, t->diag.found,
-			 t->diag.wanted);
+		interp_diag_full(&t->diag, t->path, buf, size);
 	else
 		snprintf(buf, size, "[tech] table %s: %s", t->path,
 			 strerror(-err));

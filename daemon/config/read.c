@@ -311,16 +311,6 @@ static void set_folder(struct machine_config *c, const char *path)
 		snprintf(c->folder, sizeof(c->folder), "%.*s", (int)n, path);
 }
 
-void config_say(const char *path, const struct interp_diag *d)
-{
-	char at[32] = "";
-
-	if (d->line > 0)
-		snprintf(at, sizeof(at), ":%u:%u", d->line, d->column);
-	fprintf(stderr, "%s%s: error: %s; %s\n", path, at, d->found,
-		d->wanted);
-}
-
 int config_read(struct machine_config *c, const char *path,
 		struct interp_diag *diag)
 {

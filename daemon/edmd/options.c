@@ -70,7 +70,7 @@ static int config_refuse(const char *path, int err,
 			"be read\n", path, strerror(-err));
 		return err == -ENOENT ? EX_NOINPUT : EX_IOERR;
 	}
-	config_say(path, d);
+	interp_diag_tell(d, path);
 	return EX_CONFIG;
 }
 

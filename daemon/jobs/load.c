@@ -233,9 +233,7 @@ static void on_compiled(void *arg, struct compiler_result *r)
 		return;
 	}
 	if (r->err == -EINVAL)
-		snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s",
-			 job.name, r->diag.line, r->diag.column, r->diag.found,
-			 r->diag.wanted);
+		interp_diag_full(&r->diag, job.name, reason, sizeof(reason));
 	else
 		snprintf(reason, sizeof(reason), "its program cannot be made: "
 			 "%s", strerror(-r->err));

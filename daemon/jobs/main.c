@@ -259,7 +259,7 @@ static int configure(struct jobs *j, struct machine_config *config,
 	if (err == 0)
 		err = config_check_kinematics(config, &d);
 	if (err == -EINVAL) {
-		config_say(o->config, &d);
+		interp_diag_tell(&d, o->config);
 		return EX_CONFIG;
 	}
 	if (err < 0) {

@@ -65,8 +65,7 @@ static int judge(struct jobs *j, const struct mdi *m,
 		return EX_CONFIG;
 	}
 	if (r->err == -EINVAL) {
-		snprintf(reason, REASON_MAX, "%u:%u: %s; %s", r->diag.line,
-			 r->diag.column, r->diag.found, r->diag.wanted);
+		interp_diag_full(&r->diag, "mdi", reason, REASON_MAX);
 		return EX_DATAERR;
 	}
 	if (r->err < 0)

@@ -81,8 +81,7 @@ static void refuse_text(struct jobs *j, struct upload *up,
 	char reason[480], body[2600];
 	char found[6 * sizeof(d->found)], wanted[6 * sizeof(d->wanted)];
 
-	snprintf(reason, sizeof(reason), "%s:%u:%u: error: %s; %s", up->name,
-		 d->line, d->column, d->found, d->wanted);
+	interp_diag_full(d, up->name, reason, sizeof(reason));
 	json_put(found, sizeof(found), d->found);
 	json_put(wanted, sizeof(wanted), d->wanted);
 	snprintf(body, sizeof(body), "{\"line\":%u,\"column\":%u,"

@@ -145,6 +145,21 @@ def test_check_lists_all_refusals_and_who_takes_the_text():
     assert said[4].endswith(": taken by dialect linuxcnc heekscnc")
 
 
+@pytest.mark.parametrize("text", [
+    "", "\n(nothing)\n",				# all of the text
+    "G0 X1.\nO7\nM99\n", "M98 P7\nM2\nO7 G0 X1.\n",	# a line
+    "G0 X1. X2.\nM2\n",				# a word
+])
+def test_check_says_where_as_a_run_does(text):
+    place = []
+    for way in "--check", "--dry-run":
+        r = run("--dialect", "generic", way, text=text)
+        assert r.returncode == 65
+        place.append(re.search(r"^-:([1-9]\d*:[1-9]\d*): error: .*",
+                               r.stderr.decode(), re.M).group(0))
+    assert place[0] == place[1]
+
+
 def test_what_is_skipped_is_told_with_its_line():
     def said(dialect, text):
         r = run("--dialect", dialect, "--check", text=text)

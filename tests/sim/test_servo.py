@@ -114,7 +114,7 @@ def test_a_window_upside_down_is_refused_with_its_line(tmp_path):
     machine.write_text("[gap]\nwindow_low_v = 15\nwindow_high_v = 12\n")
     r = run("--machine", machine, text=SINK)
     assert r.returncode == 78
-    assert b"m.ini:3:0: error: gap.window_low_v 15 V is not at most " \
+    assert b"m.ini:3: error: gap.window_low_v 15 V is not at most " \
            b"window_high_v 12 V" in r.stderr
 
 

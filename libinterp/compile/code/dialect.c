@@ -150,6 +150,14 @@ static int compile_again(void *arg, struct interp_build *b,
 	return compile(&(struct source) { s->text, &o }, b, &lines, diag);
 }
 
+void dialect_place(struct interp_diag *d)
+{
+	if (d->line == 0)
+		d->line = 1;
+	if (d->column == 0)
+		d->column = 1;
+}
+
 int interp_compile(const struct interp_text *text,
 		   const struct interp_compile_options *o,
 		   struct interp_build *b, uint32_t *ret_lines,
@@ -162,15 +170,12 @@ int interp_compile(const struct interp_text *text,
 	err = compile(&s, b, ret_lines, diag);
 	if (err == -E2BIG) {
 		err = interp_build_refused(b, diag);
+		dialect_place(diag);
 		if (o->nc.refused)
 			o->nc.refused->say(o->nc.refused->arg, diag);
 	}
 	interp_build_again(b, NULL, NULL);
-	/* An error of the whole line is at its first column, one of the whole
-	 * text at 1:1. */
-	if (err == -EINVAL && diag->line == 0)
-		diag->line = 1;
-	if (err == -EINVAL && diag->column == 0)
-		diag->column = 1;
+	if (err == -EINVAL)
+		dialect_place(diag);
 	return err;
 }

@@ -7,6 +7,7 @@
  * line to the last, subprograms where they stand.  Lines with variables are
  * left out.
  */
+#include "code/dialect.h"
 #include "code/macro.h"
 
 #include <errno.h>
@@ -14,8 +15,11 @@
 
 static void say(struct nc_reader *r, const struct interp_diag *d)
 {
+	struct interp_diag placed = *d;
+
+	dialect_place(&placed);
 	if (r->ntold++ < INTERP_NC_REFUSED_MAX)
-		r->o->refused->say(r->o->refused->arg, d);
+		r->o->refused->say(r->o->refused->arg, &placed);
 }
 
 static bool is_before(const struct interp_diag *a, const struct interp_diag *b)

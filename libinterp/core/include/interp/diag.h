@@ -2,7 +2,7 @@
 /*
  * diag.h - why an input was refused, and where
  *
- * Printed by the programs as
+ * Printed by the programs (interp_diag_tell()) as
  *	FILE:LINE:COLUMN: error: FOUND; WANTED
  * Both texts are one sentence without a full stop; WANTED says what would
  * have been accepted.
@@ -31,6 +31,18 @@ struct interp_diag {
  */
 int interp_diag_say(struct interp_diag *d, const char *format, ...)
 	__attribute__((format(printf, 2, 3)));
+
+/**
+ * interp_diag_full() - the refusal as it is printed, with no newline.
+ *
+ * FILE alone is the place of the whole input, and FILE:LINE that of a whole
+ * line.  What does not fit into @size bytes is left out.
+ */
+void interp_diag_full(const struct interp_diag *d, const char *file, char *to,
+		      size_t size);
+
+/** interp_diag_tell() - the same on stderr, whole, and a newline. */
+void interp_diag_tell(const struct interp_diag *d, const char *file);
 
 /**
  * interp_diag_print() - vsnprintf() for refusals: %g has up to 15 digits.
