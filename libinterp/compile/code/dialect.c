@@ -150,7 +150,7 @@ static int compile_again(void *arg, struct interp_build *b,
 	return compile(&(struct source) { s->text, &o }, b, &lines, diag);
 }
 
-void dialect_place(struct interp_diag *d)
+void nc_dialect_place(struct interp_diag *d)
 {
 	if (d->line == 0)
 		d->line = 1;
@@ -170,12 +170,12 @@ int interp_compile(const struct interp_text *text,
 	err = compile(&s, b, ret_lines, diag);
 	if (err == -E2BIG) {
 		err = interp_build_refused(b, diag);
-		dialect_place(diag);
+		nc_dialect_place(diag);
 		if (o->nc.refused)
 			o->nc.refused->say(o->nc.refused->arg, diag);
 	}
 	interp_build_again(b, NULL, NULL);
 	if (err == -EINVAL)
-		dialect_place(diag);
+		nc_dialect_place(diag);
 	return err;
 }

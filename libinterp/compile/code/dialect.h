@@ -37,9 +37,9 @@ int nc_dialect_read(struct interp_dialect *d, const char *text, size_t bytes,
 const struct interp_dialect *interp_dialect_base(const char *name);
 
 /**
- * dialect_place() - the whole line is refused at its first column, the whole
+ * nc_dialect_place() - the whole line is refused at its first column, the whole
  * text at 1:1: who reads a refusal of a text can go to a byte of it.
  */
-void dialect_place(struct interp_diag *d);
+void nc_dialect_place(struct interp_diag *d);
 
 #endif /* CODE_DIALECT_H */

@@ -17,7 +17,7 @@ static void say(struct nc_reader *r, const struct interp_diag *d)
 {
 	struct interp_diag placed = *d;
 
-	dialect_place(&placed);
+	nc_dialect_place(&placed);
 	if (r->ntold++ < INTERP_NC_REFUSED_MAX)
 		r->o->refused->say(r->o->refused->arg, &placed);
 }
