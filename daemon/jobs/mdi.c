@@ -65,7 +65,8 @@ static int judge(struct jobs *j, const struct mdi *m,
 		return EX_CONFIG;
 	}
 	if (r->err == -EINVAL) {
-		interp_diag_full(&r->diag, "mdi", reason, REASON_MAX);
+		snprintf(reason, REASON_MAX, "%u:%u: %s; %s", r->diag.line,
+			 r->diag.column, r->diag.found, r->diag.wanted);
 		return EX_DATAERR;
 	}
 	if (r->err < 0)

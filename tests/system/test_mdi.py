@@ -41,10 +41,9 @@ def test_lines_are_carried_out_at_once_and_are_in_the_history(machine):
 
 
 def test_what_is_not_understood_moves_nothing(machine):
-    for text, says in (("G0 X5000", "mdi:1:4: error: X 5000.0000 is beyond"),
-                       ("G0 X5\nG7 X1", "mdi:2:1: error: unknown word G7"),
-                       ("", "mdi: error: empty program"),
-                       ("(nothing)", "empty program"),
+    for text, says in (("G0 X5000", "1:4: X 5000.0000 is beyond the travel"),
+                       ("G0 X5\nG7 X1", "2:1: unknown word G7"),
+                       ("", "empty program"), ("(nothing)", "empty program"),
                        ("G1 X1", "no feed given yet"),
                        ("M98 P1 L99999999\nM2\nO1\nM99", ""),
                        ("M98 P1 L99\nM2\nO1\nG91 F1 G5 X1 Y0 I50 J90 P-50 Q90"
