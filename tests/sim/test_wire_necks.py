@@ -195,8 +195,8 @@ def test_skip_tells_what_is_left_out_on_the_second_plane_alone(tmp_path):
     text = opening(floor)[2].replace("G41 H1", "G41 H1 G51 A0.05")
     told = notes_of(run("--machine", ini, "--check", text=text))
     assert [text for _, text in told] == [
-        "what lies between lines 6 and 8 is too narrow for the wire on the "
-        "second plane and is left out (gouge = skip)"]
+        "what lies between the motions of lines 6 and 8 is too narrow for the "
+        "wire on the second plane and is left out (gouge = skip)"]
 
 
 def test_an_undercut_behind_a_cone_is_missing_on_the_second_plane(tmp_path):

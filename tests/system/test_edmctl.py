@@ -74,8 +74,8 @@ def test_what_is_cut_otherwise_than_written_is_told(idle):
     with open(idle.config, "a") as f:
         f.write("\n[wire]\ngouge = skip\n")
     idle.start()
-    told = "slot.ngc:9: note: what lies between lines 9 and 11 is too narrow " \
-        "for the wire and is left out (gouge = skip)"
+    told = "slot.ngc:9: note: what lies between the motions of lines 9 and 11 " \
+        "is too narrow for the wire and is left out (gouge = skip)"
     p = idle.ctl("submit", write(idle, "slot.ngc", SLOT), "--wait")
     assert p.returncode == 0, p.stderr
     assert told in p.stderr.splitlines(), p.stderr

@@ -209,6 +209,9 @@ static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
 	assert_refused(w, "F5 G0 X5 Y-5\nG42 D1\nG1 Y0\nX10\nY5\nX10.2\nY0\n"
 		       "X20\nM2\n", 5, "a width of 0.2000 mm between the "
 		       "motions of lines 5 and 7");
+	/* A neck within a curve: it has one line. */
+	assert_refused(w, "F5 G41 D1 G1 X5\nX8\nG5 Y2 I6 J2.2 P6 Q-2.2\n"
+		       "G1 Y5\nM2\n", 3, "between the motions of line 3");
 	assert_refused(w, "F5\nG41 D1 G1 X.11\nX8\n", 2,
 		       "a lead of 0.1100 mm for a change of offset of 0.1100");
 	assert_refused(w, "F5 G41 D1 G1 X5\nX8\nG40 Y.05\n", 3, "a lead of");

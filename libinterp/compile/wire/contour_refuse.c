@@ -14,21 +14,38 @@ static const char *plane_name(int p)
 	return p ? " on the second plane" : "";
 }
 
+#define LINES_MAX	40
+
+/* A curve has many motions in one line. */
+static const char *name_lines(const struct contour *k, uint32_t m, uint32_t n,
+			      char to[LINES_MAX])
+{
+	const uint32_t a = k->m[m].word.line, b = k->m[n].word.line;
+
+	if (a == b)
+		snprintf(to, LINES_MAX, "line %u", a);
+	else
+		snprintf(to, LINES_MAX, "lines %u and %u", a, b);
+	return to;
+}
+
 static int refuse_stuck(const struct contour *k, const struct track_fault *f,
 			int plane, struct interp_diag *diag)
 {
 	const uint32_t a = k->m[f->a].word.line, b = k->m[f->b].word.line;
 	const bool skips = k->guides.wire->gouge == INTERP_GOUGE_SKIP;
+	char lines[LINES_MAX];
 
 	diag->line = a < b ? a : b;
 	if (f->found_mm >= 0)
 		snprintf(diag->found, sizeof(diag->found),
-			 "a width of %.4f mm between the motions of lines %u "
-			 "and %u%s", f->found_mm, a, b, plane_name(plane));
+			 "a width of %.4f mm between the motions of %s%s",
+			 f->found_mm, name_lines(k, f->a, f->b, lines),
+			 plane_name(plane));
 	else
 		snprintf(diag->found, sizeof(diag->found),
-			 "no room for the wire between the motions of lines %u "
-			 "and %u%s", a, b, plane_name(plane));
+			 "no room for the wire between the motions of %s%s",
+			 name_lines(k, f->a, f->b, lines), plane_name(plane));
 	snprintf(diag->wanted, sizeof(diag->wanted),
 		 "%.4f mm for this offset, or a smaller one; %s", f->wanted_mm,
 		 skips ? "or a contour that begins where the wire fits" :
@@ -72,20 +89,20 @@ int contour_refuse_track(const struct contour *k, const struct track_fault *f,
 void contour_note_left(const struct contour *k, const struct track_fault *f,
 		       int plane)
 {
-	const uint32_t a = k->m[f->a].word.line, b = k->m[f->b].word.line;
-	char text[160];
+	char text[160], lines[LINES_MAX];
 
 	if (!k->notes)
 		return;
+	name_lines(k, f->a, f->b, lines);
 	if (f->kind == TRACK_POINT)
-		snprintf(text, sizeof(text), "the corner of lines %u and %u is "
-			 "so sharp that the wire leaves %.4f mm of its point%s",
-			 a, b, f->found_mm, plane_name(plane));
+		snprintf(text, sizeof(text), "the corner of %s is so sharp "
+			 "that the wire leaves %.4f mm of its point%s", lines,
+			 f->found_mm, plane_name(plane));
 	else
-		snprintf(text, sizeof(text), "what lies between lines %u and "
-			 "%u is too narrow for the wire%s and is left out "
-			 "(gouge = skip)", a, b, plane_name(plane));
-	k->notes->say(k->notes->arg, a, text);
+		snprintf(text, sizeof(text), "what lies between the motions of "
+			 "%s is too narrow for the wire%s and is left out "
+			 "(gouge = skip)", lines, plane_name(plane));
+	k->notes->say(k->notes->arg, k->m[f->a].word.line, text);
 }
 
 void contour_note_constant(const struct contour *k, const struct face *f)
@@ -104,6 +121,8 @@ void contour_note_constant(const struct contour *k, const struct face *f)
 int contour_refuse_faces(const struct contour *k, const struct face_fault *f,
 			 struct interp_diag *diag)
 {
+	char lines[LINES_MAX];
+
 	diag->line = k->m[f->a].word.line;
 	if (f->crowded)
 		return interp_diag_say(diag, "a contour up to line %u that "
@@ -111,11 +130,10 @@ int contour_refuse_faces(const struct contour *k, const struct face_fault *f,
 				       "taper; fewer motions that are short "
 				       "against the taper",
 				       k->m[f->b].word.line);
-	return interp_diag_say(diag, "the faces of lines %u and %u, which "
-				     "meet below the second plane; a smaller "
-				     "taper, or a second plane that is lower",
-				     k->m[f->a].word.line,
-				     k->m[f->b].word.line);
+	return interp_diag_say(diag, "the faces of %s, which meet below the "
+				     "second plane; a smaller taper, or a "
+				     "second plane that is lower",
+				     name_lines(k, f->a, f->b, lines));
 }
 
 int contour_refuse_lead(const struct contour_motion *m, double by_mm,
