@@ -3,6 +3,7 @@
 #include "interp/diag.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -68,33 +69,23 @@ int interp_diag_say(struct interp_diag *d, const char *format, ...)
 	return -EINVAL;
 }
 
-#define PLACE_MAX	32
-
-/* Behind the name of a file. */
-static void put_place(const struct interp_diag *d, char to[PLACE_MAX])
-{
-	to[0] = '\0';
-	if (d->line > 0 && d->column > 0)
-		snprintf(to, PLACE_MAX, ":%u:%u", d->line, d->column);
-	else if (d->line > 0)
-		snprintf(to, PLACE_MAX, ":%u", d->line);
-}
-
 void interp_diag_full(const struct interp_diag *d, const char *file, char *to,
 		      size_t size)
 {
-	char place[PLACE_MAX];
+	char at[32] = "";
 
-	put_place(d, place);
-	snprintf(to, size, "%s%s: error: %s; %s", file, place, d->found,
+	if (d->line > 0 && d->column > 0)
+		snprintf(at, sizeof(at), ":%u:%u", d->line, d->column);
+	else if (d->line > 0)
+		snprintf(at, sizeof(at), ":%u", d->line);
+	snprintf(to, size, "%s%s: error: %s; %s", file, at, d->found,
 		 d->wanted);
 }
 
 void interp_diag_tell(const struct interp_diag *d, const char *file)
 {
-	char place[PLACE_MAX];
+	char text[PATH_MAX + SENTENCE_MAX];
 
-	put_place(d, place);
-	fprintf(stderr, "%s%s: error: %s; %s\n", file, place, d->found,
-		d->wanted);
+	interp_diag_full(d, file, text, sizeof(text));
+	fprintf(stderr, "%s\n", text);
 }

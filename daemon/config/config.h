@@ -344,7 +344,6 @@ double config_longest_mm(const struct machine_config *c, int *ret_axis);
 bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
 		      size_t size);
 
-
 /** config_period_ns() - the period that is in force. */
 int64_t config_period_ns(const struct machine_config *c);
 

@@ -170,7 +170,6 @@ int interp_compile(const struct interp_text *text,
 	err = compile(&s, b, ret_lines, diag);
 	if (err == -E2BIG) {
 		err = interp_build_refused(b, diag);
-		nc_dialect_place(diag);
 		if (o->nc.refused)
 			o->nc.refused->say(o->nc.refused->arg, diag);
 	}
