@@ -143,13 +143,28 @@ static void check_heading(struct reading *r, const char *bracket)
 			      "its keys from the next line on");
 }
 
+/* Lines end in LF, in CR LF, or in CR alone, as those of NC code.  To libinih,
+ * a comment before such lines would go on over all of them. */
+static int next_char(FILE *f)
+{
+	const int ch = getc(f);
+	int next;
+
+	if (ch != '\r')
+		return ch;
+	next = getc(f);
+	if (next != '\n' && next != EOF)
+		ungetc(next, f);
+	return '\n';
+}
+
 /* Read one line into r->text; false at the end of the file. */
 static bool get_line(struct reading *r)
 {
 	size_t n = 0;
 	int ch;
 
-	while ((ch = getc(r->f)) != EOF) {
+	while ((ch = next_char(r->f)) != EOF) {
 		if (ch == '\0') {
 			refuse_syntax(r, "a NUL byte", "a text file");
 			return false;

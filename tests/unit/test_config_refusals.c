@@ -278,6 +278,28 @@ static void a_nul_byte_or_an_endless_line_is_refused(void **state)
 	assert_string_equal(d.found, "a line too long");
 }
 
+static void lines_may_end_in_cr_alone(void **state)
+{
+	static const char *const end[] = { "\n", "\r\n", "\r" };
+	struct machine_config c;
+	struct interp_diag d;
+	char text[120];
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(end) / sizeof(end[0]); i++) {
+		const int n = snprintf(text, sizeof(text),
+				       "; a comment%s[gap]%s%sservo_v = 20%s"
+				       "nonsense%s", end[i], end[i], end[i],
+				       end[i], end[i]);
+
+		assert_int_equal(read_bytes(text, (size_t)n, &c, &d), -EINVAL);
+		assert_int_equal(d.line, 5);
+		*strstr(text, "nonsense") = ';';
+		assert_int_equal(read_bytes(text, (size_t)n, &c, &d), 0);
+		assert_true(c.gap.servo_v == 20);
+	}
+}
+
 static void a_refused_file_leaves_the_machine_alone(void **state)
 {
 	struct machine_config c, before;
@@ -368,6 +390,7 @@ int main(void)
 		cmocka_unit_test(every_number_is_refused_outside_its_range),
 		cmocka_unit_test(every_misspelt_key_is_met_with_the_right_one),
 		cmocka_unit_test(a_nul_byte_or_an_endless_line_is_refused),
+		cmocka_unit_test(lines_may_end_in_cr_alone),
 		cmocka_unit_test(a_refused_file_leaves_the_machine_alone),
 		cmocka_unit_test(a_missing_file_is_told_from_a_bad_one),
 		cmocka_unit_test(a_damaged_file_is_read_or_refused_with_its_line),

@@ -34,6 +34,24 @@ static void every_file_that_is_built_in_is_read(void **state)
 			 interp_dialect_by_name("sodick-wire"));
 }
 
+/* Behind a comment, all of such a file would be one. */
+static void lines_may_end_in_cr_alone(void **state)
+{
+	static const char *const end[] = { "\n", "\r\n", "\r" };
+	struct interp_dialect *d;
+	char text[120];
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(end) / sizeof(end[0]); i++) {
+		snprintf(text, sizeof(text), "# a comment%s%s[dialect]%s"
+			 "base = generic%snonsense%s", end[i], end[i], end[i],
+			 end[i], end[i]);
+		assert_int_equal(read_text(text, &d), -EINVAL);
+		assert_int_equal(diag.line, 5);
+		assert_int_equal(diag.column, 1);
+	}
+}
+
 /* A text read in a dialect of one's own, which begins from generic. */
 static void take(struct compiled *c, const char *dialect, const char *text)
 {
@@ -225,6 +243,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_file_that_is_built_in_is_read),
+		cmocka_unit_test(lines_may_end_in_cr_alone),
 		cmocka_unit_test(a_word_does_what_its_file_says),
 		cmocka_unit_test(an_ignored_word_takes_its_letters_along),
 		cmocka_unit_test(a_refused_word_says_what_it_means_elsewhere),

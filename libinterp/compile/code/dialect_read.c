@@ -74,6 +74,16 @@ static struct piece cut(struct piece *p, char c)
 	return trim(head);
 }
 
+/* The next line: it ends in LF, in CR LF, or in CR alone. */
+static struct piece cut_line(struct piece *p)
+{
+	const char *lf = memchr(p->at, '\n', p->n);
+	const size_t n = lf ? (size_t)(lf - p->at) : p->n;
+	const char *cr = memchr(p->at, '\r', n);
+
+	return cut(p, !cr || cr + 1 == lf ? '\n' : '\r');
+}
+
 /* The next word, up to a blank.  After the last word, n is 0. */
 static struct piece next_word(struct piece *p)
 {
@@ -513,7 +523,7 @@ int nc_dialect_read(struct interp_dialect *d, const char *text, size_t bytes,
 	while (!err && all.n) {
 		f.line++;
 		f.line_at = all.at;
-		err = read_line(&f, cut(&all, '\n'), &in);
+		err = read_line(&f, cut_line(&all), &in);
 	}
 	return err;
 }
