@@ -202,12 +202,17 @@ COLUMNS_INLINE bool is_clear(const struct change *c,
 }
 
 /* No column bends more than in a narrower window it may: a wide one sees a
- * corner from beside it. */
-COLUMNS_INLINE void no_more(double d[INTERP_NAXES], const double *per_mm,
-			    double mm, uint32_t n)
+ * corner from beside it.  Return: the columns of which it sees more. */
+COLUMNS_INLINE uint32_t no_more(double d[INTERP_NAXES], const double *per_mm,
+				double mm, uint32_t n)
 {
-	for (uint32_t j = 0; j < n; j++)
+	uint32_t more = 0;
+
+	for (uint32_t j = 0; j < n; j++) {
+		more |= (uint32_t)(d[j] > per_mm[j] * mm) << j;
 		d[j] = smaller(d[j], per_mm[j] * mm);
+	}
+	return more;
 }
 
 COLUMNS_INLINE void bow_change(const struct bow *k, double ret[INTERP_NAXES],
@@ -285,7 +290,8 @@ COLUMNS_INLINE double curve(struct pass *w, uint32_t i, double most,
 		c.per_mm = l.bow.per_mm;
 		change_of(w, sure, &c, along, n);
 		if (at > 0)
-			no_more(c.d, per_mm, l.bow.mm, n);
+			l.beside_corner = no_more(c.d, per_mm,
+						  l.bow.mm, n);
 		l.certain = true;
 		clear = is_clear(&c, all, n);
 		for (uint32_t j = 0; j < n; j++)

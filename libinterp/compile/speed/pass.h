@@ -83,6 +83,8 @@ struct look {
 	uint32_t node, along;
 	struct around *window;
 	struct bow bow;
+	uint32_t beside_corner;		/* columns that this window sees bend
+					 * more than narrower ones let them */
 	bool certain;			/* what a rounding can be does not
 					 * count */
 	double most_mm_s;		/* more is not asked for */
