@@ -168,6 +168,45 @@ static void at_a_cusp_a_piece_ends_and_is_slow(void **state)
 	}
 }
 
+/* The slowest speed is for bends that no axis notices; a slow axis is slower.
+ * The last curve is straight. */
+static void no_axis_is_too_slow_for_a_curve(void **state)
+{
+	static const struct {
+		const char *text;
+		double x_mm_s, c_mm_s, c_deg;
+	} row[] = {
+		{ "G5.1 X20 Y0 I10 J10\n", 0.01, 1000, 1 },
+		{ "G5.1 X20 Y0 I10 J10\n", 1, 1000, 1 },
+		{ "G6.2 K0 X0 C0.\nK0 X0.1 C40.\nK0 X0.2 C80.\n"
+		  "K0 X0.3 C120.\nK1\nK1\nK1\nK1\n", 1000, 0.05, 120 },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(row) / sizeof(row[0]); i++) {
+		struct nc_read n = nc_ready();
+		char text[160];
+		double most;
+
+		n.machine.axis[INTERP_X].v_max_mm_s = row[i].x_mm_s;
+		n.machine.axis[INTERP_X].pulse_mm = 0.01;
+		n.machine.axis[INTERP_Y].pulse_mm = 0.01;
+		n.machine.axis[INTERP_C].v_max_mm_s = row[i].c_mm_s;
+		snprintf(text, sizeof(text), "F6000\n%s", row[i].text);
+		nc_read(&n, text);
+		/* X goes 1 of 1.41 mm at least. */
+		most = fmin(row[i].x_mm_s * M_SQRT2, row[i].c_mm_s *
+			    n.p.head->length_mm / row[i].c_deg);
+		for (uint32_t k = 0; k < nc_count(&n); k++)
+			if (nc_seg(&n, k)->feed_max_mm_s > 1.001 * most)
+				fail_msg("%s: %g mm/s, %g at most",
+					 row[i].text,
+					 (double)nc_seg(&n, k)->feed_max_mm_s,
+					 most);
+		nc_done(&n);
+	}
+}
+
 /* X Z and C turn together. */
 static void fanucs_curve_may_have_any_axes(void **state)
 {
@@ -268,6 +307,7 @@ int main(void)
 		cmocka_unit_test(a_parabola_is_as_long_as_it_is),
 		cmocka_unit_test(units_offsets_and_increments_count),
 		cmocka_unit_test(at_a_cusp_a_piece_ends_and_is_slow),
+		cmocka_unit_test(no_axis_is_too_slow_for_a_curve),
 		cmocka_unit_test(fanucs_curve_may_have_any_axes),
 		cmocka_unit_test(what_is_wrong_is_refused_where_it_stands),
 	};

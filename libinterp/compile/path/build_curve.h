@@ -70,7 +70,7 @@ struct curve_plan {
 					 * within the chord error */
 	double pulses_mm[INTERP_NAXES];	/* of each axis */
 	double pulse_mm;		/* the finest */
-	double slowest_mm_s;			/* never less */
+	double slowest_mm_s;		/* bends make it no slower */
 	double feed_mm_s;		/* as programmed: of axes that count */
 	bool weighed;			/* those beside the path count more than
 					 * on other curves */
@@ -140,6 +140,16 @@ struct curve_look build_curve_look(struct curve_plan *p, double u);
 /** build_curve_look_between() - and where it is tightest between two looks. */
 void build_curve_look_between(struct curve_plan *p, const struct curve_look *a,
 			      const struct curve_look *b);
+
+/**
+ * build_curve_bend_mm_s() - the feed at a place where bends allow @v and, of
+ * axes beside the path, @beside.
+ *
+ * Where that is next to nothing it is more, but no axis is faster than it can.
+ */
+double build_curve_bend_mm_s(const struct curve_plan *p,
+			     const struct interp_nurbs_way *w, double v,
+			     double beside);
 
 /** build_curve_feed() - the feed of the piece in hand, mm/s. */
 double build_curve_feed(const struct curve_plan *p);

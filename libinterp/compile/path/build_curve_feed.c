@@ -55,6 +55,21 @@ void build_curve_limit(struct curve_plan *p)
 	}
 	/* The axes do not notice a bend whose radius is less than a pulse. */
 	p->slowest_mm_s = cbrt(p->j_mm_s3 * p->pulse_mm * p->pulse_mm);
+	for (uint32_t k = 0; k < p->curve.counted; k++)
+		p->slowest_mm_s = fmin(p->slowest_mm_s, l->v_mm_s[k]);
+}
+
+double build_curve_bend_mm_s(const struct curve_plan *p,
+			     const struct interp_nurbs_way *w, double v,
+			     double beside)
+{
+	double most = HUGE_VAL;
+
+	for (uint32_t k = 0; !w->cusp && k < p->curve.naxes; k++)
+		most = fmin(most, p->limits.v_mm_s[k] / fabs(w->d[0][k]));
+	return fmin(most, fmin(fmax(v, p->slowest_mm_s),
+			       fmax(beside, BUILD_SLOWEST_BESIDE *
+					    p->slowest_mm_s)));
 }
 
 static void learn(struct curve_plan *p, const struct interp_nurbs_way *w)
@@ -108,15 +123,14 @@ static double alone_mm_s(struct curve_plan *p, const struct interp_nurbs_way *w)
 	const double v = fmin(interp_nurbs_feed_mm_s(&p->walk.eval.c, w,
 						     &p->limits),
 			      set_off_mm_s(p, w, 0, p->curve.counted));
-	double beside;
+	double beside = HUGE_VAL;
 
-	if (p->curve.counted == p->curve.naxes)
-		return fmax(v, p->slowest_mm_s);
-	beside = beside_mm_s(p, w);
-	p->beside_mm_s = fmin(p->beside_mm_s, beside);
-	beside = fmax(w->cusp ? 0 : beside,
-		      BUILD_SLOWEST_BESIDE * p->slowest_mm_s);
-	return fmin(fmax(v, p->slowest_mm_s), beside);
+	if (p->curve.counted < p->curve.naxes) {
+		beside = beside_mm_s(p, w);
+		p->beside_mm_s = fmin(p->beside_mm_s, beside);
+		beside = w->cusp ? 0 : beside;
+	}
+	return build_curve_bend_mm_s(p, w, v, beside);
 }
 
 struct curve_look build_curve_look(struct curve_plan *p, double u)

@@ -121,8 +121,7 @@ double build_share_mm_s(const struct curve_plan *p,
 	const double beside = follow_mm_s(p, w, &go, p->curve.counted,
 					  p->curve.naxes);
 
-	return fmin(fmax(v, p->slowest_mm_s),
-		    fmax(beside, BUILD_SLOWEST_BESIDE * p->slowest_mm_s));
+	return build_curve_bend_mm_s(p, w, v, beside);
 }
 
 /* What column @k leaves of its acceleration along the piece in hand, at
