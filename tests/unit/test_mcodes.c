@@ -4,6 +4,8 @@
  */
 #include "nc_read.h"
 
+#include "interp/compile.h"
+
 static const struct interp_mcode table[INTERP_NMCODES] = {
 	[60]  = { INTERP_MCODE_BEFORE, INTERP_MCODE_SKIP },
 	[61]  = { INTERP_MCODE_BEFORE, INTERP_MCODE_REDO },
@@ -12,15 +14,21 @@ static const struct interp_mcode table[INTERP_NMCODES] = {
 	[255] = { INTERP_MCODE_FREE, INTERP_MCODE_SKIP },
 };
 
-static struct nc_read read_text(const char *text)
+static struct nc_read read_in(const char *dialect, const char *text)
 {
 	struct nc_read n = nc_ready();
 
+	n.dialect = interp_dialect_by_name(dialect);
 	n.o.mcode = table;
 	nc_read_bytes(&n, text, strlen(text));
 	interp_build_destroy(n.build);
 	n.build = NULL;
 	return n;
+}
+
+static struct nc_read read_text(const char *text)
+{
+	return read_in("generic", text);
 }
 
 static void assert_mcode(const struct nc_read *n, uint32_t i, uint8_t number)
@@ -59,6 +67,27 @@ static void a_code_alone_is_an_action(void **state)
 	assert_mcode(&n, 0, 61);
 	assert_mcode(&n, 1, 71);
 	nc_done(&n);
+}
+
+/* Whoever lists M60 in the machine file has a PLC that threads the wire. */
+static void a_code_is_no_stop_for_a_person(void **state)
+{
+	static const char *const dialects[] = {
+		"fanuc-wire", "makino", "mastercam-wire", "agievision",
+		"charmilles-robofil-440", "linuxcnc", "heekscnc", "generic",
+		"sodick-wire", "fanuc-sinker",
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(dialects) / sizeof(dialects[0]); i++) {
+		struct nc_read n = read_in(dialects[i], "M60\nM0\n");
+
+		assert_int_equal(n.rc, 0);
+		assert_int_equal(nc_count(&n), 2);
+		assert_mcode(&n, 0, 60);
+		assert_int_equal(nc_seg(&n, 1)->kind, INTERP_STOP);
+		nc_done(&n);
+	}
 }
 
 static void assert_refused(const char *text, uint32_t column,
@@ -122,6 +151,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_code_stands_on_its_side_of_the_motion),
 		cmocka_unit_test(a_code_alone_is_an_action),
+		cmocka_unit_test(a_code_is_no_stop_for_a_person),
 		cmocka_unit_test(what_is_not_in_the_table_is_refused),
 		cmocka_unit_test(two_of_a_side_on_a_line_are_refused),
 		cmocka_unit_test(without_a_table_there_are_none),
