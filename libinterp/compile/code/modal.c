@@ -129,6 +129,10 @@ static int run_machine(struct nc_reader *r)
 	if (r->tool.on)
 		return nc_refuse(r, r->block.code_at[NC_MACHINE],
 				 "G49 before it", "G53 under G43.4");
+	if (r->offset_side || r->taper_side)
+		return nc_refuse(r, r->block.code_at[NC_MACHINE],
+				 "G40 and G50 before it",
+				 "G53 under an offset or a taper");
 	if (motion && motion->value <= 1 && (r->block.words & NC_AXES))
 		return 0;
 	return nc_refuse(r, r->block.code_at[NC_MACHINE],
