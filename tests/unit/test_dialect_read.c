@@ -208,6 +208,33 @@ static void what_is_ignored_is_noted_once(void **state)
 	compile_done(&c);
 }
 
+/* A % ends the text, but only where it is alone. */
+static void words_behind_the_end_are_noted(void **state)
+{
+	static const struct {
+		const char *text, *noted;
+	} row[] = {
+		{ "%\nG0 X1.\nM2\n%\nrubbish\n", "" },
+		{ "%\nG0 X1.\nM2\n% (end)\nrubbish\n", "" },
+		{ "%\nG0 X1.\nM2\nrubbish\n", "4 nothing behind the e|" },
+		{ "%\nG0 X1.\nM2\n%junk\nrubbish\n",
+		  "5 nothing behind the e|" },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(row) / sizeof(row[0]); i++) {
+		struct compiled c = compile_ready("generic");
+		char all[512] = "";
+		const struct interp_notes notes = { note, all, false };
+
+		c.o.nc.notes = &notes;
+		compile_bytes(&c, row[i].text, strlen(row[i].text));
+		assert_int_equal(c.rc, 0);
+		assert_string_equal(all, row[i].noted);
+		compile_done(&c);
+	}
+}
+
 static void what_others_read_otherwise_is_noted_before_a_run(void **state)
 {
 	static const char text[] = "G20\nG0 X1 C120\nG0 X1.\nG4 P500\n";
@@ -250,6 +277,7 @@ int main(void)
 		cmocka_unit_test(a_rule_changes_what_numbers_mean),
 		cmocka_unit_test(a_mistake_in_a_file_is_refused_at_its_place),
 		cmocka_unit_test(what_is_ignored_is_noted_once),
+		cmocka_unit_test(words_behind_the_end_are_noted),
 		cmocka_unit_test(what_others_read_otherwise_is_noted_before_a_run),
 		cmocka_unit_test(a_work_offset_is_written_by_the_program),
 	};

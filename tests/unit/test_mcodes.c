@@ -7,6 +7,7 @@
 #include "interp/compile.h"
 
 static const struct interp_mcode table[INTERP_NMCODES] = {
+	[8]   = { INTERP_MCODE_BEFORE, INTERP_MCODE_SKIP },
 	[60]  = { INTERP_MCODE_BEFORE, INTERP_MCODE_SKIP },
 	[61]  = { INTERP_MCODE_BEFORE, INTERP_MCODE_REDO },
 	[70]  = { INTERP_MCODE_AFTER, INTERP_MCODE_STOP },
@@ -69,8 +70,9 @@ static void a_code_alone_is_an_action(void **state)
 	nc_done(&n);
 }
 
-/* Whoever lists M60 in the machine file has a PLC that threads the wire. */
-static void a_code_is_no_stop_for_a_person(void **state)
+/* Whoever lists M60 in the machine file has a PLC that threads the wire; and
+ * M8, that has the pump. */
+static void a_code_is_the_plcs_in_all_dialects(void **state)
 {
 	static const char *const dialects[] = {
 		"fanuc-wire", "makino", "mastercam-wire", "agievision",
@@ -80,12 +82,13 @@ static void a_code_is_no_stop_for_a_person(void **state)
 
 	(void)state;
 	for (size_t i = 0; i < sizeof(dialects) / sizeof(dialects[0]); i++) {
-		struct nc_read n = read_in(dialects[i], "M60\nM0\n");
+		struct nc_read n = read_in(dialects[i], "M60\nM0\nM8\n");
 
 		assert_int_equal(n.rc, 0);
-		assert_int_equal(nc_count(&n), 2);
+		assert_int_equal(nc_count(&n), 3);
 		assert_mcode(&n, 0, 60);
 		assert_int_equal(nc_seg(&n, 1)->kind, INTERP_STOP);
+		assert_mcode(&n, 2, 8);
 		nc_done(&n);
 	}
 }
@@ -151,7 +154,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_code_stands_on_its_side_of_the_motion),
 		cmocka_unit_test(a_code_alone_is_an_action),
-		cmocka_unit_test(a_code_is_no_stop_for_a_person),
+		cmocka_unit_test(a_code_is_the_plcs_in_all_dialects),
 		cmocka_unit_test(what_is_not_in_the_table_is_refused),
 		cmocka_unit_test(two_of_a_side_on_a_line_are_refused),
 		cmocka_unit_test(without_a_table_there_are_none),

@@ -110,6 +110,15 @@ static int note_label(struct nc_reader *r, struct nc_label l,
 	return 0;
 }
 
+/* A % alone on its line. */
+static bool ends_tape(const uint8_t *p, const uint8_t *end)
+{
+	if (p == end || *p != '%')
+		return false;
+	p = nc_skip_void(p + 1, end);
+	return p == end || *p == ';';
+}
+
 /* Look at every line, up to the second %. */
 static int find_labels(struct nc_reader *r)
 {
@@ -124,7 +133,7 @@ static int find_labels(struct nc_reader *r)
 		const uint8_t *end = nc_line_end(l.at, r->end);
 		const uint8_t *p = nc_skip_void(l.at, end);
 
-		if (p < end && *p == '%' && !fresh)
+		if (ends_tape(p, end) && !fresh)
 			break;
 		if (p < end && *p != ';' && *p != '/')
 			fresh = false;
@@ -323,8 +332,9 @@ static void note_rest(struct nc_reader *r)
 	for (; p < r->end; p = nc_line_next(end, r->end), line++) {
 		end = nc_line_end(p, r->end);
 		p = nc_skip_void(p, end);
-		if (p < end && (*p == '%' || strchr(label, *p) ||
-				nc_label_at(r, p, end)))
+		if (ends_tape(p, end))
+			return;
+		if (p < end && (strchr(label, *p) || nc_label_at(r, p, end)))
 			return;
 		if (has_words(p, end)) {
 			nc_note_rest(r, line);

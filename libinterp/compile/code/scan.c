@@ -199,12 +199,10 @@ static const struct nc_code *find_code(struct nc_reader *r,
 
 	if (code->group == NC_UNKNOWN)
 		code = &l->other;
-	/* A machine's own M code is more than a word that does nothing here, or
-	 * that stops for a person who does it. */
+	/* Whatever the machine file gives to the PLC, a dialect takes from it no
+	 * more than the end, calls and returns. */
 	if (l == &r->d->letter[1] &&
-	    (code->group == NC_UNKNOWN || code->group >= NC_NGROUPS ||
-	     code->group == NC_ELECTRODE_CHANGE ||
-	     (code->group == NC_STOP && code->value == NC_HALT))) {
+	    (code->group != NC_STOP || code->value < NC_FINISH)) {
 		const struct nc_code *mine = nc_mcode(r, n);
 
 		code = mine ? mine : code;

@@ -54,7 +54,8 @@ void build_curve_limit(struct curve_plan *p)
 						    l->a_mm_s2[k]);
 	}
 	/* The axes do not notice a bend whose radius is less than a pulse. */
-	p->slowest_mm_s = cbrt(p->j_mm_s3 * p->pulse_mm * p->pulse_mm);
+	p->slowest_mm_s = fmin(cbrt(p->j_mm_s3 * p->pulse_mm * p->pulse_mm),
+			       sqrt(p->a_mm_s2 * p->pulse_mm));
 	for (uint32_t k = 0; k < p->curve.counted; k++)
 		p->slowest_mm_s = fmin(p->slowest_mm_s, l->v_mm_s[k]);
 }
