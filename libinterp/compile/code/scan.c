@@ -199,8 +199,8 @@ static const struct nc_code *find_code(struct nc_reader *r,
 
 	if (code->group == NC_UNKNOWN)
 		code = &l->other;
-	/* Whatever the machine file gives to the PLC, a dialect takes from it no
-	 * more than the end, calls and returns. */
+	/* Of what the machine file gives to the PLC, a dialect takes the end,
+	 * calls and returns alone. */
 	if (l == &r->d->letter[1] &&
 	    (code->group != NC_STOP || code->value < NC_FINISH)) {
 		const struct nc_code *mine = nc_mcode(r, n);
