@@ -119,19 +119,41 @@ def test_it_commands_a_machine(machine):
     assert told[2].startswith("65 bad.ngc:1:11: error: ")
 
 
+def talk(code, *args):
+    """A program that is talked to."""
+    return subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(code), *map(str, args)],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT / "clients/python")})
+
+
+def test_a_status_is_told_after_it_was_asked_for(machine):
+    """Not one that came while nobody listened."""
+    p = talk("""
+        import sys, edm
+        m = edm.Client(sys.argv[1], timeout=20)
+        m.jog("Y", 0.5)
+        print("jog", flush=True)
+        sys.stdin.readline()
+        print(m.status().pos_mm[1], flush=True)
+    """, machine.name)
+    assert p.stdout.readline() == "jog\n"
+    machine.client.status_where(
+        lambda s: abs(s.pos_mm[1] - 0.5) < 1e-6 and s.state == "idle")
+    out, _ = p.communicate("go\n", timeout=40)
+    assert abs(float(out) - 0.5) < 1e-6
+
+
 def test_it_goes_on_after_the_service_was_started_anew(machine):
     """It is told the new boot number, and signs again."""
-    p = subprocess.Popen(
-        [sys.executable, "-c", textwrap.dedent("""
-            import sys, edm
-            m = edm.Client(sys.argv[1], timeout=20)
-            print(m.status().state, flush=True)
-            sys.stdin.readline()
-            m.estop()
-            print(m.ask("hello").body, flush=True)
-        """), machine.name], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-        text=True, cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": str(ROOT / "clients/python")})
+    p = talk("""
+        import sys, edm
+        m = edm.Client(sys.argv[1], timeout=20)
+        print(m.status().state, flush=True)
+        sys.stdin.readline()
+        m.estop()
+        print(m.ask("hello").body, flush=True)
+    """, machine.name)
     assert p.stdout.readline() == "idle\n"
     machine.kill("jobs")
     machine.start_jobs()

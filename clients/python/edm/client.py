@@ -372,9 +372,13 @@ class Client:
 
     def status(self, timeout: float | None = None) -> Status:
         """The first that is told from now on."""
+        wait = timeout or self.timeout
+        end = time.monotonic() + wait
+        # What came since anything was asked last is old.
+        while self._net.waits() and time.monotonic() < end:
+            self.hear(0)
         n = self._statuses
-        self._until(lambda: self._statuses > n, timeout or self.timeout,
-                    lambda: None)
+        self._until(lambda: self._statuses > n, wait, lambda: None)
         assert self._status is not None
         return self._status
 

@@ -48,9 +48,13 @@ class Udpm:
         packet = MAGIC + bytes(4) + channel.encode() + b"\0" + data
         self._out.sendto(packet, self._to)
 
+    def waits(self, seconds: float = 0) -> bool:
+        """Is there a packet, or does one come in time?"""
+        return bool(select.select([self._in], [], [], seconds)[0])
+
     def take(self, seconds: float) -> tuple[str, bytes] | None:
         """The next packet's channel and data, if one comes in time."""
-        if not select.select([self._in], [], [], seconds)[0]:
+        if not self.waits(seconds):
             return None
         packet = self._in.recv(65536)
         end = packet.find(b"\0", 8)
