@@ -26,6 +26,16 @@ G0 Z1
 M30
 """
 
+# Twenty seconds at most in the orbit, which ends with positioning inside.
+TIMED = """G21 G90 M3
+D1=0.15
+F30
+G0 X0 Y0 Z0
+G135 Z-0.12 D1 J0.03 Q0.03 P1 S20
+G1 Z-0.4
+M30
+"""
+
 # Five holes, each deeper; line 6 is done five times.
 MACRO = """o100 sub
 G0 X#1 Y0
@@ -65,6 +75,7 @@ def inside(text, machine, name, where):
 
 @pytest.mark.parametrize("text, machine, name, line", [
     (ORBITS, MACHINE, None, 7), (ORBITS, MACHINE, None, 11),
+    (TIMED, MACHINE, None, 5), (TIMED, MACHINE, None, 6),
     (MACRO, MACHINE, "linuxcnc", 6), (MACRO, MACHINE, "linuxcnc", 9),
     (PASSES, WIRE, None, 24), (PASSES, WIRE, None, 31),
 ])
@@ -76,7 +87,7 @@ def test_from_a_line(text, machine, name, line):
 
 @pytest.mark.parametrize("text, machine, name", [
     (ORBITS, MACHINE, None), (MACRO, MACHINE, "linuxcnc"),
-    (PASSES, WIRE, None)])
+    (PASSES, WIRE, None), (TIMED, MACHINE, None)])
 @pytest.mark.parametrize("part", [0.3, 0.55, 0.8])
 def test_from_a_place(text, machine, name, part):
     more = ["--dialect", name] if name else []

@@ -64,15 +64,20 @@ static bool is_positioning(const struct interp_seg *s)
 	       !(s->flags & INTERP_SEG_SENSED);
 }
 
-/* The last positioning up to there: its end is off the work. */
+/* The last positioning up to there: its end is off the work.  A part with a
+ * time is done from its begin on, unless it is over. */
 static uint32_t find_last(const struct interp_build *b, uint32_t far)
 {
 	const struct interp_seg *s = segs_of(b);
+	uint32_t last = 0;
 
-	for (uint32_t i = far; i > 0; i--)
-		if (is_positioning(&s[i]))
-			return i;
-	return 0;
+	for (uint32_t i = far; i > 0; i--) {
+		if (s[i].kind == INTERP_TIMED && s[i].arg > far)
+			last = 0;
+		if (last == 0 && is_positioning(&s[i]))
+			last = i;
+	}
+	return last;
 }
 
 /* Was something felt that is not known, or that the way in would need? */
@@ -110,11 +115,6 @@ static int check(const struct from *f)
 		f->diag->line = s[i].line;
 		if (check_probing(f, i) < 0)
 			return -EINVAL;
-		if (s[i].kind == INTERP_TIMED && i <= f->last &&
-		    s[i].arg > f->last)
-			return interp_diag_say(f->diag, "positioning inside a "
-				"part with a time, before that place; a place "
-				"before or behind that part");
 	}
 	return 0;
 }
