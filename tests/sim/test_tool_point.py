@@ -191,3 +191,36 @@ def test_a_chain_that_is_none_is_refused_with_its_line(tmp_path, chain, why):
     assert p.returncode == 78
     n = next(i for i, l in enumerate(INI.splitlines(), 1) if "chain" in l)
     assert f":{n}:" in p.stderr.decode() and why in p.stderr.decode(), p.stderr
+
+
+def last_z(text):
+    """Of the machine, in mm, where the program ends."""
+    r = pulses("--dry-run", "--machine", EXAMPLES / "five-axis.ini",
+               text="G21 G90 F600\n" + text + "M2\n")
+    return r[-1][1 + AXES.index("Z")] / 1e3
+
+
+TO = "G1 X5. Y5. Z-70.\n"
+
+
+@pytest.mark.parametrize("text, z", [
+    ("G43.4\n" + TO, 5), ("H1=10.\nG43.4 H1\n" + TO, 15),
+    ("H1=10.\nG43.4 H1\n" + TO + "G43.4\nG1 X6.\n", 15),
+    ("H1=10.\nG43.4 H1\n" + TO + "G43.5\nG1 X6. I0. J0. K1.\n", 15),
+    ("H1=10.\nG43.4 H1\n" + TO + "H1=12.\nG1 X6. Z-70.\n", 17),
+    ("H1=10.\nG43.4 H1\n" + TO + "G49\nG43.4\nG1 X6. Z-70.\n", 5),
+    ("H1=10.\nH2=1.\nG43.4 H1\n" + TO + "G43.4 H2\nG1 X6. Z-70.\n", 6),
+])
+def test_a_tool_keeps_its_length(text, z):
+    assert last_z(text) == pytest.approx(z, abs=1e-3)
+
+
+@pytest.mark.parametrize("text, column, found", [
+    ("H1=10.\nH1\nG43.4\n", 1, "G43.4 without H, behind an H of its own"),
+    ("H1=10.\nG43.4 D1\n", 7, "D with G43.4"),
+    ("H1=10.\nG43.4 H1\nH1\n", 1, "H1 under G43.4"),
+])
+def test_a_length_that_would_not_count_is_refused(text, column, found):
+    r = run("--check", "--machine", EXAMPLES / "five-axis.ini", text=text)
+    line = len(text.splitlines())
+    assert f":{line}:{column}: error: {found}".encode() in r.stderr

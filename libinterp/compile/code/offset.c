@@ -71,9 +71,17 @@ int nc_run_register(struct nc_reader *r)
 	if (nc_has(r, NC_D) && nc_has(r, NC_H))
 		return nc_refuse(r, b->at[NC_H], "D or H",
 				 "H on a line with D");
+	/* A register may have been filled that is in use. */
+	if (!nc_has(r, slot) && r->tool.on)
+		nc_tool_length(r);
 	if (!nc_has(r, slot))
 		return set_side(r, r->line_at);
+	if (r->tool.on && !nc_has_group(r, NC_TOOL_POINT))
+		return nc_refuse(r, b->at[slot], "G43.4 H1 for another length",
+				 "%s under G43.4",
+				 nc_quote_word(r, b->at[slot]).s);
 	r->selected = (uint32_t)b->value[slot];
+	r->h_alone = slot == NC_H && !nc_has_group(r, NC_TOOL_POINT);
 	/* If G41 is on the line, that word does it. */
 	return nc_has_group(r, NC_OFFSET) ? 0 : set_side(r, b->at[slot]);
 }

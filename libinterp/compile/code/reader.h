@@ -44,6 +44,8 @@
 struct nc_tool_point {
 	bool on;
 	bool vector;			/* G43.5: I J K are its direction */
+	bool longer;			/* by this register: */
+	uint32_t length;
 	double dir[3];			/* the last one, of length 1 */
 	struct interp_kinematics k;	/* with the tool's length */
 	double here_mm[INTERP_NAXES];	/* X Y Z of the tip, seen from the work;
@@ -243,6 +245,7 @@ struct nc_reader {
 	struct nc_register registers[NC_NREGISTERS];	/* D and H */
 	uint32_t selected;		/* the register that D or H named
 					 * last */
+	bool h_alone;			/* H did, not on a line with G43.4 */
 	struct nc_defined *defined;	/* the last one; NULL: none */
 	uint32_t ndefined;
 
@@ -383,6 +386,10 @@ void nc_take_cycle(struct nc_reader *r);
 /** nc_set_lift() - call this after a change of the plane or of the way out. */
 void nc_set_lift(struct nc_reader *r);
 int nc_run_tool_point(struct nc_reader *r);
+
+/** nc_tool_length() - the tool is as long as its register and the electrode
+ *  say; the axes stand. */
+void nc_tool_length(struct nc_reader *r);
 
 /* Under G43.4: like contour_line(), contour_arc() and contour_nurbs(), but for
  * the tip; r->word is filled.  A curve ends at r->curve.last_mm. */

@@ -24,26 +24,48 @@ static bool has_xyz(const struct interp_kinematics *k)
 	return axes == (NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z));
 }
 
-/* A register and the electrode make the tool longer: the tip is then farther
- * from the holder. */
-static int lengthen(struct nc_reader *r)
+/* H on the line names the register of the tool's length.  Without one that in
+ * use stays; G43.4 on a machine's own axes begins without. */
+static int take_length(struct nc_reader *r)
 {
-	const uint32_t n = nc_has(r, NC_H) ? (uint32_t)r->block.value[NC_H] : 0;
+	struct nc_tool_point *t = &r->tool;
 
-	for (int i = 0; i < 3; i++)
-		r->tool.k.tip_mm[i] -= r->electrode_mm *
-				       r->tool.k.tool_dir[i];
-	if (!nc_has(r, NC_H))
+	if (nc_has(r, NC_D))
+		return nc_refuse(r, r->block.at[NC_D], "H for the tool's "
+				 "length", "D with G43.4");
+	if (!nc_has(r, NC_H) && !t->on && r->h_alone)
+		return refuse_on(r, "H on its line, as in G43.4 H1; a "
+				 "register of 0 mm for no length",
+				 "G43.4 without H, behind an H of its own");
+	if (!nc_has(r, NC_H)) {
+		t->longer = t->longer && t->on;
 		return 0;
-	if (!r->registers[n].known)
+	}
+	t->longer = true;
+	t->length = (uint32_t)r->block.value[NC_H];
+	if (!r->registers[t->length].known)
 		return nc_refuse(r, r->block.at[NC_H], "a register filled "
 				 "before, as in H1=75 and G43.4 H1",
 				 "the tool's length in register %u, which is "
-				 "not defined", n);
-	for (int i = 0; i < 3; i++)
-		r->tool.k.tip_mm[i] -= r->registers[n].mm *
-				       r->tool.k.tool_dir[i];
+				 "not defined", t->length);
 	return 0;
+}
+
+/* A register and the electrode make the tool longer: the tip is then farther
+ * from the holder. */
+void nc_tool_length(struct nc_reader *r)
+{
+	struct nc_tool_point *t = &r->tool;
+	const double mm = r->electrode_mm +
+			  (t->longer ? r->registers[t->length].mm : 0);
+	struct interp_kin_pose p;
+
+	t->k = *r->o->kinematics;
+	for (int i = 0; i < 3; i++)
+		t->k.tip_mm[i] -= mm * t->k.tool_dir[i];
+	memcpy(t->here_mm, r->contour.here_mm, sizeof(t->here_mm));
+	interp_kin_forward(&t->k, r->contour.here_mm, &p);
+	memcpy(t->here_mm, p.tip_mm, sizeof(p.tip_mm));
 }
 
 void nc_tool_looks(struct nc_reader *r)
@@ -56,7 +78,6 @@ void nc_tool_looks(struct nc_reader *r)
 
 static int switch_on(struct nc_reader *r)
 {
-	struct interp_kin_pose p;
 	int err;
 
 	if (!r->o->kinematics)
@@ -71,13 +92,10 @@ static int switch_on(struct nc_reader *r)
 		return refuse_on(r, "G40 and G50 before it, and no guides",
 				 "places of the tip with a wire's offset or "
 				 "taper");
-	r->tool.k = *r->o->kinematics;
-	err = lengthen(r);
+	err = take_length(r);
 	if (err)
 		return err;
-	memcpy(r->tool.here_mm, r->contour.here_mm, sizeof(r->tool.here_mm));
-	interp_kin_forward(&r->tool.k, r->contour.here_mm, &p);
-	memcpy(r->tool.here_mm, p.tip_mm, sizeof(p.tip_mm));
+	nc_tool_length(r);
 	r->tool.on = true;
 	nc_set_offset(r);
 	r->tool.vector = r->block.code[NC_TOOL_POINT]->value == NC_TOOL_VECTOR;
