@@ -64,6 +64,7 @@ void config_entry_words(const struct machine_config *c,
 	}
 	if (config_way_out(c) < 0)
 		say(&w, "stops for the wire to be threaded, ");
-	say(&w, "comes in along its path, %.3f mm up to line %u, and cuts on "
-	    "from the first spark", e->far_mm - e->from_mm, e->line);
+	say(&w, "comes in along its path, %.3f mm up to line %u, and %s",
+	    e->far_mm - e->from_mm, e->line, e->dead ?
+	    "goes on without power" : "cuts on from the first spark");
 }

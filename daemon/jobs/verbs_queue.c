@@ -90,9 +90,10 @@ void verbs_move(struct jobs *j, const struct verb *v,
 	} else {
 		err = store_move(j->store, job.n, c->arg < 0);
 		verbs_answer(j, c, err == 0 ? 0 : err == -ENOENT ? REFUSED :
-			     EX_IOERR, err == 0 ? "moved" : err == -ENOENT ?
-			     "it is at the end of the queue already" :
-			     "the store failed");
+			     EX_IOERR, err == 0 ? "moved" : err != -ENOENT ?
+			     "the store failed" : c->arg < 0 ?
+			     "it is the first of the queue already" :
+			     "it is the last of the queue already");
 	}
 }
 

@@ -113,7 +113,8 @@ def test_a_call_is_no_line_that_moves():
     r = run("--machine", MACHINE, "--dry-run", "--dialect", "linuxcnc",
             "--from-line", 16, text=MACRO)
     assert r.returncode == 65
-    assert b"nothing moves in line 16 or behind it; a line up to 13" in r.stderr
+    assert b"nothing moves on the path from line 16 on; a line that moves, as 13" \
+        in r.stderr
 
 
 def test_behind_the_last_positioning_nothing_is_left_to_move():

@@ -341,8 +341,9 @@ int nc_curve_goes_on(struct nc_reader *r)
 		return nc_refuse(r, at, c->open == NC_BODY ? "the rest of its "
 				 "knots, P alone in a block" :
 				 "the rest of its knots, K alone in a block",
-				 "%u knots for %u control points of order %u: "
-				 "it takes %u", c->nknots, c->npoints,
+				 "%s in a curve of %u knots for %u control "
+				 "points of order %u: it takes %u",
+				 nc_quote_word(r, at).s, c->nknots, c->npoints,
 				 c->order, c->npoints + c->order);
 	return nc_refuse(r, at, "G5.3 before it",
 			 "another word inside a curve begun in line %u",

@@ -225,6 +225,7 @@ static int add_outputs(struct from *f)
 		else if (s[i].kind == INTERP_AUX)
 			pump = s[i].arg;
 	}
+	f->entry->dead = power == INTERP_AUX_POWER_OFF;
 	/* Without a way up there is a wire to be threaded. */
 	if (f->o->up < 0)
 		err = interp_build_action(f->way, INTERP_STOP, 0, &w, f->diag);
@@ -437,8 +438,8 @@ static int refuse_line(const struct from *f)
 			last = s[i].line;
 	f->diag->line = f->o->line;
 	return interp_diag_say(f->diag,
-			       "nothing moves in line %u or behind it; "
-			       "a line up to %u",
+			       "nothing moves on the path from line %u on; "
+			       "a line that moves, as %u",
 			       f->o->line, last);
 }
 

@@ -76,6 +76,7 @@ struct interp_build_entry {
 	uint32_t again;			/* M code that is told again, in the
 					 * same form; 0: none */
 	uint32_t electrode;		/* that cuts at the place; 0: none */
+	bool dead;			/* the power is off there: no spark */
 };
 
 /**
