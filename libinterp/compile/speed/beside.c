@@ -139,6 +139,16 @@ static double rate_of(const struct look *l, uint32_t j)
 	return fabs(l->bow.a->rate[j] + l->bow.b->rate[j]) / 2;
 }
 
+/* So much of the rate is certain. */
+static double sure_rate_of(struct pass *w, const struct look *l, uint32_t j)
+{
+	const double rate = rate_of(l, j);
+	const double off = w->tol[j] +
+			   pass_off(w, j, pass_along_tol(w, l->along), rate);
+
+	return larger(rate - off / (2 * l->bow.way_mm), 0);
+}
+
 /* What is noted of the column at this node.  Its rate is that of the narrowest
  * window that shows something: a wide one sees less of a rate that comes and
  * goes, and an axis took up to 1.6 times its jerk on its top. */
@@ -147,7 +157,8 @@ static struct bent *noted(struct pass *w, const struct look *l, uint32_t j)
 	struct bent *b = &w->bent[j];
 
 	if (!(w->bends >> j & 1))
-		*b = (struct bent) { .rate = rate_of(l, j) };
+		*b = (struct bent) { 0 };
+	b->rate = larger(b->rate, sure_rate_of(w, l, j));
 	w->bends |= 1u << j;
 	return b;
 }
