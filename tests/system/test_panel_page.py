@@ -334,7 +334,7 @@ def test_a_program_begins_at_a_line(p, page):
                                                          "true")
     page.locator("#send").click()
     expect(page.locator(".toasts")).to_contain_text(
-        "nothing moves in line 99")
+        "nothing moves on the path from line 99 on")
     page.locator("#fromline").fill("7")
     page.locator("#send").click()
     expect(page.locator(".toasts")).to_contain_text("off the work")
