@@ -207,7 +207,7 @@ def test_a_begin_inside_survives_a_power_cut(idle):
 
 
 @pytest.mark.parametrize("where, code, why", [
-    ({"from_line": 10}, 65, "nothing moves in line 10"),
+    ({"from_line": 10}, 65, "nothing moves on the path from line 10 on"),
     ({"from_mm": 1e6}, 65, "nothing of the path is left"),
     ({"from_mm": -1}, 65, "cannot begin at this place"),
     ({"from_mm": float("nan")}, 65, "cannot begin at this place"),
