@@ -92,8 +92,8 @@ void verbs_move(struct jobs *j, const struct verb *v,
 		verbs_answer(j, c, err == 0 ? 0 : err == -ENOENT ? REFUSED :
 			     EX_IOERR, err == 0 ? "moved" : err != -ENOENT ?
 			     "the store failed" : c->arg < 0 ?
-			     "it is the first of the queue already" :
-			     "it is the last of the queue already");
+			     "it is the first that waits already" :
+			     "it is the last that waits already");
 	}
 }
 

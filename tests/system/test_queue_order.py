@@ -20,7 +20,7 @@ def test_a_job_that_waits_is_moved_and_stays_there(machine):
     assert names(machine) == ["a", "d", "b", "c"]
     # The first that waits cannot pass the one that is loaded.
     r = machine.ctl("move", "d", "-1")
-    assert r.returncode == 1 and "end of the queue" in r.stderr
+    assert r.returncode == 1 and "the first that waits" in r.stderr
     assert machine.ctl("move", "b", "+1").returncode == 0
     assert names(machine) == ["a", "d", "c", "b"]
     machine.kill("jobs")
