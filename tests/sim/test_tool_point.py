@@ -216,7 +216,7 @@ def test_a_tool_keeps_its_length(text, z):
 
 
 @pytest.mark.parametrize("text, column, found", [
-    ("H1=10.\nH1\nG43.4\n", 1, "G43.4 without H, behind an H of its own"),
+    ("H1=10.\nH1\nG43.4\n", 1, "G43.4 without H, after an H on a line"),
     ("H1=10.\nG43.4 D1\n", 7, "D with G43.4"),
     ("H1=10.\nG43.4 H1\nH1\n", 1, "H1 under G43.4"),
 ])

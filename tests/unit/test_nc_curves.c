@@ -207,6 +207,24 @@ static void no_axis_is_too_slow_for_a_curve(void **state)
 	}
 }
 
+/* A bend of five pulses, where the axes have 1 mm/s2. */
+static void nor_is_its_acceleration(void **state)
+{
+	struct nc_read n = nc_ready();
+	float least = INFINITY;
+
+	(void)state;
+	for (int i = INTERP_X; i <= INTERP_Y; i++) {
+		n.machine.axis[i].a_max_mm_s2 = 1;
+		n.machine.axis[i].pulse_mm = 0.01;
+	}
+	nc_read(&n, "F600\nG5.1 X0 Y1.4 I10 J0.7\n");
+	for (uint32_t k = 0; k < nc_count(&n); k++)
+		least = fminf(least, nc_seg(&n, k)->feed_max_mm_s);
+	assert_true((double)(least * least) / 0.05 <= 1);
+	nc_done(&n);
+}
+
 /* X Z and C turn together. */
 static void fanucs_curve_may_have_any_axes(void **state)
 {
@@ -311,6 +329,7 @@ int main(void)
 		cmocka_unit_test(units_offsets_and_increments_count),
 		cmocka_unit_test(at_a_cusp_a_piece_ends_and_is_slow),
 		cmocka_unit_test(no_axis_is_too_slow_for_a_curve),
+		cmocka_unit_test(nor_is_its_acceleration),
 		cmocka_unit_test(fanucs_curve_may_have_any_axes),
 		cmocka_unit_test(what_is_wrong_is_refused_where_it_stands),
 	};

@@ -120,19 +120,27 @@ static int run_pump(struct nc_reader *r)
 			 r->block.code_at[NC_PUMP]);
 }
 
+int nc_machine_place(struct nc_reader *r, const uint8_t *at)
+{
+	if (r->tool.on)
+		return nc_refuse(r, at, "G49 before it", "%s under G43.4",
+				 nc_quote_word(r, at).s);
+	if (r->offset_side || r->taper_side)
+		return nc_refuse(r, at, "G40 and G50 before it",
+				 "%s under an offset or a taper",
+				 nc_quote_word(r, at).s);
+	return 0;
+}
+
 /* nc_target() obeys G53.  This function checks who may use it. */
 static int run_machine(struct nc_reader *r)
 {
 	const struct nc_code *motion = nc_has_group(r, NC_MOTION) ?
 				       r->block.code[NC_MOTION] : NULL;
+	const int err = nc_machine_place(r, r->block.code_at[NC_MACHINE]);
 
-	if (r->tool.on)
-		return nc_refuse(r, r->block.code_at[NC_MACHINE],
-				 "G49 before it", "G53 under G43.4");
-	if (r->offset_side || r->taper_side)
-		return nc_refuse(r, r->block.code_at[NC_MACHINE],
-				 "G40 and G50 before it",
-				 "G53 under an offset or a taper");
+	if (err)
+		return err;
 	if (motion && motion->value <= 1 && (r->block.words & NC_AXES))
 		return 0;
 	return nc_refuse(r, r->block.code_at[NC_MACHINE],

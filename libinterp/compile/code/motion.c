@@ -237,13 +237,9 @@ static int home(struct nc_reader *r)
 	double end_mm[INTERP_NAXES];
 	int err;
 
-	if (r->tool.on)
-		return nc_refuse(r, r->block.code_at[NC_ONE_SHOT],
-				 "G49 before it", "G28 under G43.4");
-	if (r->offset_side || r->taper_side)
-		return nc_refuse(r, r->block.code_at[NC_ONE_SHOT],
-				 "G40 and G50 before it",
-				 "G28 under an offset or a taper");
+	err = nc_machine_place(r, r->block.code_at[NC_ONE_SHOT]);
+	if (err)
+		return err;
 	nc_target(r, end_mm);
 	if (axes) {
 		err = nc_line_to(r, end_mm, true);

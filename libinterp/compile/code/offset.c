@@ -71,7 +71,7 @@ int nc_run_register(struct nc_reader *r)
 	if (nc_has(r, NC_D) && nc_has(r, NC_H))
 		return nc_refuse(r, b->at[NC_H], "D or H",
 				 "H on a line with D");
-	/* A register may have been filled that is in use. */
+	/* The line may have filled the register of the tool's length. */
 	if (!nc_has(r, slot) && r->tool.on)
 		nc_tool_length(r);
 	if (!nc_has(r, slot))

@@ -245,7 +245,7 @@ struct nc_reader {
 	struct nc_register registers[NC_NREGISTERS];	/* D and H */
 	uint32_t selected;		/* the register that D or H named
 					 * last */
-	bool h_alone;			/* H did, not on a line with G43.4 */
+	bool h_alone;			/* H did, on a line without G43.4 */
 	struct nc_defined *defined;	/* the last one; NULL: none */
 	uint32_t ndefined;
 
@@ -386,6 +386,10 @@ void nc_take_cycle(struct nc_reader *r);
 /** nc_set_lift() - call this after a change of the plane or of the way out. */
 void nc_set_lift(struct nc_reader *r);
 int nc_run_tool_point(struct nc_reader *r);
+
+/** nc_machine_place() - may the word at @at name a place of the machine?  The tip
+ *  and the wire are elsewhere.  Return: 0, or -EINVAL. */
+int nc_machine_place(struct nc_reader *r, const uint8_t *at);
 
 /** nc_tool_length() - the tool is as long as its register and the electrode
  *  say; the axes stand. */

@@ -199,8 +199,9 @@ static const struct nc_code *find_code(struct nc_reader *r,
 
 	if (code->group == NC_UNKNOWN)
 		code = &l->other;
-	/* Of what the machine file gives to the PLC, a dialect takes the end,
-	 * calls and returns alone. */
+	/* An M code that the machine file gives to the PLC goes there, whatever
+	 * the dialect means by it.  Only the end of a program, calls and
+	 * returns stay as they are. */
 	if (l == &r->d->letter[1] &&
 	    (code->group != NC_STOP || code->value < NC_FINISH)) {
 		const struct nc_code *mine = nc_mcode(r, n);

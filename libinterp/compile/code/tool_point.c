@@ -24,8 +24,8 @@ static bool has_xyz(const struct interp_kinematics *k)
 	return axes == (NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z));
 }
 
-/* H on the line names the register of the tool's length.  Without one that in
- * use stays; G43.4 on a machine's own axes begins without. */
+/* H on the line names the register of the tool's length.  Without H the length
+ * in use stays; where G43.4 was off there is none. */
 static int take_length(struct nc_reader *r)
 {
 	struct nc_tool_point *t = &r->tool;
@@ -36,7 +36,8 @@ static int take_length(struct nc_reader *r)
 	if (!nc_has(r, NC_H) && !t->on && r->h_alone)
 		return refuse_on(r, "H on its line, as in G43.4 H1; a "
 				 "register of 0 mm for no length",
-				 "G43.4 without H, behind an H of its own");
+				 "G43.4 without H, after an H on a line "
+				 "without G43.4");
 	if (!nc_has(r, NC_H)) {
 		t->longer = t->longer && t->on;
 		return 0;
@@ -66,6 +67,7 @@ void nc_tool_length(struct nc_reader *r)
 	memcpy(t->here_mm, r->contour.here_mm, sizeof(t->here_mm));
 	interp_kin_forward(&t->k, r->contour.here_mm, &p);
 	memcpy(t->here_mm, p.tip_mm, sizeof(p.tip_mm));
+	r->curve.smooth = false;
 }
 
 void nc_tool_looks(struct nc_reader *r)

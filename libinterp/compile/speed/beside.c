@@ -149,9 +149,9 @@ static double sure_rate_of(struct pass *w, const struct look *l, uint32_t j)
 	return larger(rate - off / (2 * l->bow.way_mm), 0);
 }
 
-/* What is noted of the column at this node.  Its rate is that of the narrowest
- * window that shows something: a wide one sees less of a rate that comes and
- * goes, and an axis took up to 1.6 times its jerk on its top. */
+/* What is noted of the column at this node.  Its rate is the most of which a
+ * window is certain that shows something: a wide one sees less of a rate that
+ * comes and goes, and an axis took up to 1.6 times its jerk on its top. */
 static struct bent *noted(struct pass *w, const struct look *l, uint32_t j)
 {
 	struct bent *b = &w->bent[j];
