@@ -387,8 +387,8 @@ void nc_take_cycle(struct nc_reader *r);
 void nc_set_lift(struct nc_reader *r);
 int nc_run_tool_point(struct nc_reader *r);
 
-/** nc_machine_place() - may the word at @at name a place of the machine?  The tip
- *  and the wire are elsewhere.  Return: 0, or -EINVAL. */
+/** nc_machine_place() - may the word at @at name a place of the machine?  Under
+ *  G43.4, an offset or a taper it may not.  Return: 0, or -EINVAL. */
 int nc_machine_place(struct nc_reader *r, const uint8_t *at);
 
 /** nc_tool_length() - the tool is as long as its register and the electrode
