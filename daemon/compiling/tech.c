@@ -4,6 +4,7 @@
  * replace
  */
 #include "compiling.h"
+#include "process.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -14,18 +15,7 @@
 
 void config_tech_base(const struct machine_config *c, struct interp_tech *ret)
 {
-	interp_tech_clear(ret);
-	ret->v[INTERP_TECH_SERVO_V] = c->gap.servo_v;
-	ret->v[INTERP_TECH_SHORT_V] = c->gap.short_v;
-	ret->v[INTERP_TECH_OPEN_V] = c->gap.open_v;
-	ret->v[INTERP_TECH_WINDOW_LOW_V] = c->gap.window_low_v;
-	ret->v[INTERP_TECH_WINDOW_HIGH_V] = c->gap.window_high_v;
-	ret->v[INTERP_TECH_GAIN_MM_S_V] = c->gap.gain_mm_s_v;
-	ret->v[INTERP_TECH_FEED_MAX_MM_S] = c->gap.feed_max_mm_s;
-	ret->v[INTERP_TECH_RETRACT_MM_S] = c->gap.retract_mm_s;
-	ret->v[INTERP_TECH_JUMP_MM] = c->jump.height_mm;
-	ret->v[INTERP_TECH_JUMP_EVERY_S] = c->jump.every.s;
-	ret->v[INTERP_TECH_JUMP_SHORT_OF_MM] = c->jump.short_of_mm;
+	process_base(ret, &c->gap, &c->jump);
 }
 
 static void path_of(struct config_tech *t, const struct machine_config *c,

@@ -147,7 +147,7 @@ static const struct config_key row[] = {
 	WORDS(GAP, "retract_to", "limit", AT(gap.retract_to), retract_to_word,
 	      "how far a retract may go back: retract_limit_mm, to the "
 	       "start of the program, or to the start of the motion"),
-	COUNT(GAP, "abort_count", "", "0", 0, 1e9, AT(gap.abort_count),
+	WHOLE(GAP, "abort_count", "", "0", 0, 1e9, AT(gap.abort_count),
 	      "this many retracts with no erosion between them are fault "
 	       "retract-count; 0: no limit"),
 	NUMBER(GAP, "progress_mm", "mm", "0.001", 0, 10, AT(gap.progress_mm),

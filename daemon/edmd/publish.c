@@ -301,7 +301,7 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 		.cond_letter = c->out.cond_letter,
 		.power = c->out.power,
 		.pump = c->out.pump,
-		.negative = c->out.negative,
+		.negative = io_is_negative(&c->out),
 		.loaded = c->loaded,
 		.unhomed = (uint8_t)manual_unhomed(c),
 		.limit = (uint8_t)c->limit.on,

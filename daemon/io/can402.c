@@ -347,11 +347,11 @@ static void tell_generator(struct can402 *s, bool safe)
 	if (s->c.generator_id == 0)
 		return;
 	m.data[0] = (uint8_t)((o->power && safe) | (o->pump && safe) << 1 |
-			      o->negative << 2);
+			      io_is_negative(o) << 2);
 	m.data[1] = s->count++;
-	can_put(m.data + 2, tenths(o->pulse.peak_a), 2);
-	can_put(m.data + 4, tenths(o->pulse.on_us), 2);
-	can_put(m.data + 6, tenths(o->pulse.off_us), 2);
+	can_put(m.data + 2, tenths(o->pulse[INTERP_TECH_PEAK_A]), 2);
+	can_put(m.data + 4, tenths(o->pulse[INTERP_TECH_ON_US]), 2);
+	can_put(m.data + 6, tenths(o->pulse[INTERP_TECH_OFF_US]), 2);
 	send(s, &m);
 }
 

@@ -12,8 +12,11 @@
 #ifndef IO_H
 #define IO_H
 
+#include "interp/tech.h"
+
 #include <stdbool.h>
 #include <stddef.h>
+#include <math.h>
 #include <stdint.h>
 
 #define IO_NAXES	8		/* as enum interp_axis */
@@ -81,13 +84,6 @@ struct io_inputs {
 	int32_t actual[IO_NAXES];	/* pulses, measured or last written */
 };
 
-/* What the generator is asked for; NAN: its own setting. */
-struct io_pulse {
-	double peak_a, on_us, off_us, ignition_v;
-	bool iso;			/* timed from the ignition; counts
-					 * where on_us is given */
-};
-
 /* What the cycle wants, once a period. */
 struct io_outputs {
 	int32_t target[IO_NAXES];	/* pulses, absolute */
@@ -100,14 +96,28 @@ struct io_outputs {
 	bool reset;			/* for a period: an operator's reset */
 	bool power;			/* sparks allowed */
 	bool sense;			/* the voltage to feel contact by */
-	bool negative;			/* electrode polarity */
 	bool pump;			/* dielectric */
 	char cond_letter;		/* condition in force; 0: none */
 	uint32_t cond_number;
-	struct io_pulse pulse;
+	double pulse[INTERP_NGENERATOR];	/* asked of the generator, by
+					 * enum interp_tech_id; NAN: its own
+					 * setting */
 	double off_path_mm;		/* way that an escape has led away from
 					 * the path; 0: on the path */
 };
+
+/** io_pulse_own() - leave the generator its own settings.  RT-safe. */
+static inline void io_pulse_own(struct io_outputs *out)
+{
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		out->pulse[i] = (double)NAN;
+}
+
+/** io_is_negative() - is the electrode to be negative?  RT-safe. */
+static inline bool io_is_negative(const struct io_outputs *out)
+{
+	return out->pulse[INTERP_TECH_POLARITY] < 0;
+}
 
 struct io_machine {
 	const char *name;

@@ -17,7 +17,6 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,10 +35,9 @@ static void fresh(struct sim *s)
 }
 
 /* As bits: NAN is the same as NAN. */
-static bool same_pulse(const struct io_pulse *a, const struct io_pulse *b)
+static bool same_pulse(const struct io_outputs *a, const struct io_outputs *b)
 {
-	return memcmp(a, b, offsetof(struct io_pulse, iso)) == 0 &&
-	       a->iso == b->iso;
+	return memcmp(a->pulse, b->pulse, sizeof(a->pulse)) == 0;
 }
 
 static void power(struct sim *s)
@@ -51,7 +49,7 @@ static void power(struct sim *s)
 static void sim_write(void *self, const struct io_outputs *out)
 {
 	struct sim *s = self;
-	const bool pulse = !same_pulse(&out->pulse, &s->out.pulse);
+	const bool pulse = !same_pulse(out, &s->out);
 	const bool path = out->path != s->out.path;
 	const double was_off_mm = s->out.off_path_mm;
 	int32_t was[IO_NAXES];
@@ -144,7 +142,7 @@ int io_sim_open_seed(struct io_machine *m, const struct machine_config *c,
 		s->z_pulse_mm = c->axes.axis[INTERP_Z].pulse_mm;
 	for (int i = INTERP_X; i <= INTERP_Z; i++)
 		s->pulse_mm[i] = c->axes.axis[i].pulse_mm;
-	s->out.pulse = (struct io_pulse) { NAN, NAN, NAN, NAN, false };
+	io_pulse_own(&s->out);
 	s->depth_mm = s->p.depth_mm;
 	sim_pulses_init(s);
 	sim_switches_init(s, c);

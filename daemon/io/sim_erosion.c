@@ -63,7 +63,8 @@ void sim_erode(struct sim *s)
 {
 	const struct pulse_train *t = &s->train;
 	const bool sink = s->p.process == PROCESS_SINK;
-	const double polarity = s->out.negative ? s->p.negative_removal : 1;
+	const bool negative = io_is_negative(&s->out);
+	const double polarity = negative ? s->p.negative_removal : 1;
 	const double volume = t->per_s * s->period_s * polarity *
 			      s->pulse.crater_mm3 *
 			      (1 - s->p.secondary * s->debris) *
@@ -77,7 +78,7 @@ void sim_erode(struct sim *s)
 	s->removed_mm3 += volume;
 	if (sink)
 		s->wear_mm += d * s->p.wear_ratio *
-			      (s->out.negative ? s->p.negative_wear : 1);
+			      (negative ? s->p.negative_wear : 1);
 	s->debris = smaller(1, s->debris + d * s->p.debris_per_mm);
 }
 

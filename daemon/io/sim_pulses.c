@@ -65,16 +65,17 @@ static double crater_mm3(const struct sim *s, double peak_a, double on_us)
 
 void sim_pulses_set(struct sim *s)
 {
-	const struct io_pulse *o = &s->out.pulse;
+	const double *o = s->out.pulse;
 	const struct config_sim *p = &s->p;
-	const double peak_a = given(o->peak_a, p->peak_a);
+	const double peak_a = given(o[INTERP_TECH_PEAK_A], p->peak_a);
 	struct pulse_set *q = &s->pulse;
 	double larger;
 
-	q->on_us = given(o->on_us, p->on_us);
-	q->off_us = given(o->off_us, p->off_us);
-	q->open_v = given(o->ignition_v, p->open_v);
-	q->iso = isfinite(o->on_us) ? o->iso : p->iso != 0;
+	q->on_us = given(o[INTERP_TECH_ON_US], p->on_us);
+	q->off_us = given(o[INTERP_TECH_OFF_US], p->off_us);
+	q->open_v = given(o[INTERP_TECH_IGNITION_V], p->open_v);
+	q->iso = isfinite(o[INTERP_TECH_ON_US]) ?
+		 o[INTERP_TECH_ISO] > 0 : p->iso != 0;
 	q->crater_mm3 = crater_mm3(s, peak_a, q->on_us);
 	q->channel = exp(-q->off_us / p->deion_us);
 	q->crater_j = peak_a * p->spark_v * q->on_us * 1e-6;

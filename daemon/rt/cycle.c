@@ -22,8 +22,8 @@ void cycle_init(struct cycle *c, const struct cycle_config *config)
 		.state = STATE_IDLE,
 		.override = 1,
 		.plc_override = NAN,
-		.out.pulse = { NAN, NAN, NAN, NAN, false },
 	};
+	io_pulse_own(&c->out);
 	memcpy(c->out.target, config->start, sizeof(c->out.target));
 }
 
@@ -267,7 +267,7 @@ static void give(struct cycle *c, struct io_outputs *out)
 	}, out->target);
 	for (int i = 0; i < INTERP_NAXES && c->contouring.on; i++)
 		out->target[i] += c->contouring.added[i];
-	out->pulse.off_us = arcing_off_us(c);
+	out->pulse[INTERP_TECH_OFF_US] = arcing_off_us(c);
 	c->out.reset = false;
 }
 

@@ -98,7 +98,7 @@ struct cycle_gap_config {
 	struct cycle_time retract_max;	/* after that: fault retract-time; 0:
 					 * never */
 	uint32_t retract_escape;	/* 1: leave a short by the escape */
-	uint32_t abort_count;		/* most retracts without erosion; 0: any
+	double abort_count;		/* most retracts without erosion; 0: any
 					 * number */
 	double progress_mm;		/* so much more depth counts as
 					 * erosion */

@@ -11,6 +11,8 @@
 #include "io.h"
 #include "make_program.h"
 
+#include <string.h>
+
 #define WARM	200		/* cycles before a reading */
 #define READ	400
 
@@ -28,10 +30,8 @@ static void rig_open(struct rig *r)
 {
 	if (io_sim_open_seed(&r->m, &r->k, 1))
 		abort();
-	r->out = (struct io_outputs) {
-		.path = 1, .power = true,
-		.pulse = { NAN, NAN, NAN, NAN, false },
-	};
+	r->out = (struct io_outputs) { .path = 1, .power = true };
+	io_pulse_own(&r->out);
 	r->m.write(r->m.self, &r->out);
 }
 
@@ -83,8 +83,7 @@ static double rate_of(const struct rig *how, double gap_mm)
 	double v;
 
 	rig_open(&r);
-	r.out.pulse = how->out.pulse;
-	r.out.negative = how->out.negative;
+	memcpy(r.out.pulse, how->out.pulse, sizeof(r.out.pulse));
 	v = rate(&r, gap_mm);
 	rig_close(&r);
 	return v;
@@ -94,7 +93,7 @@ static struct rig plain(void)
 {
 	struct rig r = { .k = base };
 
-	r.out.pulse = (struct io_pulse) { NAN, NAN, NAN, NAN, false };
+	io_pulse_own(&r.out);
 	return r;
 }
 
@@ -171,9 +170,9 @@ static void pulse(void)
 		for (size_t j = 0; j < COUNT(offs); j++) {
 			struct rig r = plain();
 
-			r.out.pulse.on_us = ons[i];
-			r.out.pulse.off_us = offs[j];
-			r.out.pulse.iso = true;
+			r.out.pulse[INTERP_TECH_ON_US] = ons[i];
+			r.out.pulse[INTERP_TECH_OFF_US] = offs[j];
+			r.out.pulse[INTERP_TECH_ISO] = true;
 			printf(" %.4f", best_rate(&r));
 		}
 		printf("\n");
@@ -187,9 +186,9 @@ static void peak(void)
 		struct rig r = plain();
 		double v;
 
-		r.out.pulse.peak_a = a;
+		r.out.pulse[INTERP_TECH_PEAK_A] = a;
 		v = best_rate(&r);
-		r.out.negative = true;
+		r.out.pulse[INTERP_TECH_POLARITY] = -1;
 		printf("%g %.4f %.4f\n", a, v, best_rate(&r));
 	}
 }

@@ -41,9 +41,8 @@ static inline void quiet(struct machine_config *k)
 static inline void open_sim(struct bench *b, uint64_t seed)
 {
 	assert_int_equal(io_sim_open_seed(&b->m, &b->k, seed), 0);
-	b->out = (struct io_outputs) {
-		.path = 1, .pulse = { NAN, NAN, NAN, NAN, false },
-	};
+	b->out = (struct io_outputs) { .path = 1 };
+	io_pulse_own(&b->out);
 	b->m.write(b->m.self, &b->out);
 }
 

@@ -41,11 +41,12 @@ static void arcs_first_stretch_the_off_time_step_by_step(void **st)
 
 	(void)st;
 	cut_arcing(&r, &k);
-	assert_true(isnan(r.out.pulse.off_us));
+	assert_true(isnan(r.out.pulse[INTERP_TECH_OFF_US]));
 	for (uint32_t i = 1; i <= 4; i++) {
 		assert_in_range(climb_to(&r, i), i == 1 ? 1 : 20,
 				i == 1 ? 40 : 20);
-		assert_near(r.out.pulse.off_us, 10.0 + 10 * i, 1e-9);
+		assert_near(r.out.pulse[INTERP_TECH_OFF_US], 10.0 + 10 * i,
+			    1e-9);
 		assert_int_equal(r.c.totals.arcs, i);
 		assert_int_equal(r.c.state, STATE_ERODE);
 	}
@@ -59,11 +60,11 @@ static void a_condition_s_off_time_is_the_one_that_is_stretched(void **st)
 
 	(void)st;
 	cut_arcing(&r, &k);
-	r.c.out.pulse.off_us = 50;
+	r.c.out.pulse[INTERP_TECH_OFF_US] = 50;
 	climb_to(&r, 2);
-	assert_near(r.out.pulse.off_us, 150, 1e-9);
+	assert_near(r.out.pulse[INTERP_TECH_OFF_US], 150, 1e-9);
 	steps(&r, SPARKING_V, 10);
-	assert_near(r.out.pulse.off_us, 150, 1e-9);
+	assert_near(r.out.pulse[INTERP_TECH_OFF_US], 150, 1e-9);
 	rig_free(&r);
 }
 
@@ -95,7 +96,7 @@ static void then_a_jump_then_a_retract_then_a_fault(void **st)
 	shares(&r, 0.2, 0.8, 0, 0);
 	tell(&r, CYCLE_START);
 	until(&r, STATE_ERODE, SPARKING_V, 1000);
-	assert_true(isnan(r.out.pulse.off_us));
+	assert_true(isnan(r.out.pulse[INTERP_TECH_OFF_US]));
 	rig_free(&r);
 }
 
@@ -130,7 +131,7 @@ static void rungs_that_are_not_there_are_passed_over(void **st)
 	k.jump.height_mm = 0;
 	cut_arcing(&r, &k);
 	assert_in_range(until(&r, STATE_RETRACT, SPARKING_V, 100), 1, 22);
-	assert_true(isnan(r.out.pulse.off_us));
+	assert_true(isnan(r.out.pulse[INTERP_TECH_OFF_US]));
 	assert_int_equal(r.c.totals.jumps, 0);
 	rig_free(&r);
 }
@@ -149,7 +150,7 @@ static void without_arcs_a_rung_is_given_back_slowly(void **st)
 	for (uint32_t i = 2; i > 0; i--)
 		assert_in_range(climb_to(&r, i), 1, 100);
 	climb_to(&r, ARCING_NONE);
-	assert_true(isnan(r.out.pulse.off_us));
+	assert_true(isnan(r.out.pulse[INTERP_TECH_OFF_US]));
 	/* Between the two shares it stays where it is. */
 	shares(&r, 0.2, 0.4, 0.4, 0);
 	climb_to(&r, 1);

@@ -741,8 +741,10 @@ static void the_generator_is_told_each_period(void **st)
 
 	(void)st;
 	begin(&r);
-	r.out.negative = true;
-	r.out.pulse = (struct io_pulse) { 6.4, 12.5, -1, -1, false };
+	io_pulse_own(&r.out);
+	r.out.pulse[INTERP_TECH_POLARITY] = -1;
+	r.out.pulse[INTERP_TECH_PEAK_A] = 6.4;
+	r.out.pulse[INTERP_TECH_ON_US] = 12.5;
 	run(&r, 1);
 	assert_int_equal(r.generator.data[0], 5);
 	assert_int_equal(can_get(r.generator.data + 2, 2), 64);

@@ -3,6 +3,7 @@
  * test_conditions_set.c - the values in force: machine file, condition, `set`
  */
 #include "cycle_help.h"
+#include "process.h"
 
 #include <errno.h>
 
@@ -67,9 +68,9 @@ static void check_machine(const struct rig *r)
 {
 	assert_memory_equal(&r->c.gap, &r->c.config.gap, sizeof(r->c.gap));
 	assert_memory_equal(&r->c.jump, &r->c.config.jump, sizeof(r->c.jump));
-	assert_true(isnan(r->c.out.pulse.on_us));
-	assert_false(r->c.out.pulse.iso);
-	assert_false(r->c.out.negative);
+	assert_true(isnan(r->c.out.pulse[INTERP_TECH_ON_US]));
+	assert_true(isnan(r->c.out.pulse[INTERP_TECH_ISO]));
+	assert_false(io_is_negative(&r->c.out));
 }
 
 static void check_c1(const struct rig *r)
@@ -78,10 +79,10 @@ static void check_c1(const struct rig *r)
 	assert_true(r->c.gap.short_v == r->c.config.gap.short_v);
 	assert_true(r->c.gap.feed_max_mm_s == 4);
 	assert_int_equal(r->c.jump.every.cycles, 250);
-	assert_true(r->c.out.pulse.on_us == 100);
-	assert_true(isnan(r->c.out.pulse.off_us));
-	assert_true(r->c.out.pulse.iso);
-	assert_true(r->out.negative);
+	assert_true(r->c.out.pulse[INTERP_TECH_ON_US] == 100);
+	assert_true(isnan(r->c.out.pulse[INTERP_TECH_OFF_US]));
+	assert_true(r->c.out.pulse[INTERP_TECH_ISO] > 0);
+	assert_true(io_is_negative(&r->out));
 }
 
 static void check_c2(const struct rig *r)
@@ -89,8 +90,8 @@ static void check_c2(const struct rig *r)
 	assert_true(r->c.gap.servo_v == 35);
 	assert_true(r->c.gap.feed_max_mm_s == 0.5);
 	assert_int_equal(r->c.jump.every.cycles, 100);
-	assert_true(isnan(r->c.out.pulse.on_us));
-	assert_false(r->out.negative);
+	assert_true(isnan(r->c.out.pulse[INTERP_TECH_ON_US]));
+	assert_false(io_is_negative(&r->out));
 }
 
 static void the_condition_of_the_place_is_in_force_both_ways(void **state)
@@ -294,17 +295,17 @@ static void polarity_is_the_sets_then_the_programs_then_the_conditions(void **s)
 	rig_load(&r, b, &k);
 	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
 	cut_until(&r, 0.5);
-	assert_true(r.out.negative);
+	assert_true(io_is_negative(&r.out));
 	cut_until(&r, 1.5);
-	assert_false(r.out.negative);
+	assert_false(io_is_negative(&r.out));
 	assert_int_equal(set(&r, INTERP_TECH_POLARITY, -1), ANSWER_DONE);
 	step(&r, SPARKING_V);
-	assert_true(r.out.negative);
+	assert_true(io_is_negative(&r.out));
 	assert_int_equal(set(&r, INTERP_TECH_POLARITY, NAN), ANSWER_DONE);
 	step(&r, SPARKING_V);
-	assert_false(r.out.negative);
+	assert_false(io_is_negative(&r.out));
 	cut_until(&r, 3);
-	assert_true(r.out.negative);
+	assert_true(io_is_negative(&r.out));
 	rig_free(&r);
 }
 
@@ -329,6 +330,24 @@ static void a_damaged_condition_is_a_fault_and_no_value(void **state)
 	rig_free(&r);
 }
 
+/* A field that the cycle goes by is a setting, or asked of the generator. */
+static void each_live_field_has_its_place(void **state)
+{
+	struct cycle_config k = usual_config();
+	struct interp_tech base;
+
+	(void)state;
+	process_base(&base, &k.gap, &k.jump);
+	for (int i = 0; i < INTERP_NTECH; i++) {
+		const enum interp_tech_id id = (enum interp_tech_id)i;
+		const double *at = process_setting(id, &k.gap, &k.jump);
+
+		assert_int_equal(at != NULL, i >= INTERP_NGENERATOR &&
+				 interp_tech_is_live(id));
+		assert_true(at ? base.v[i] == *at : isnan(base.v[i]));
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -341,6 +360,7 @@ int main(void)
 		cmocka_unit_test(the_list_of_sets_is_bounded),
 		cmocka_unit_test(polarity_is_the_sets_then_the_programs_then_the_conditions),
 		cmocka_unit_test(a_damaged_condition_is_a_fault_and_no_value),
+		cmocka_unit_test(each_live_field_has_its_place),
 	};
 
 	return cmocka_run_group_tests_name("rt/process", tests, NULL, NULL);

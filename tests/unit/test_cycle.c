@@ -415,11 +415,11 @@ static void m5_walks_without_power_until_m3(void **st)
 			assert_int_equal(r.c.state, STATE_TRAVEL);
 		if (z > 2.005 && z < 2.995) {
 			sparked = sparked || r.out.power;
-			assert_true(r.out.negative && r.out.pump);
+			assert_true(io_is_negative(&r.out) && r.out.pump);
 		}
 	}
 	assert_true(sparked);
-	assert_false(r.out.negative);
+	assert_false(io_is_negative(&r.out));
 	assert_false(r.out.pump);
 	assert_int_equal(r.c.outcome, OUTCOME_DONE);
 	rig_free(&r);

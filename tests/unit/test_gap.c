@@ -248,7 +248,7 @@ static void a_condition_s_ignition_voltage_sets_the_bound(void **st)
 	(void)st;
 	k.gap.ignition_v = 120;
 	cut_at(&r, &k, 2);
-	r.c.out.pulse.ignition_v = 200;
+	r.c.out.pulse[INTERP_TECH_IGNITION_V] = 200;
 	step(&r, 299);
 	assert_int_equal(r.c.fault.first, FAULT_NONE);
 	step(&r, 301);

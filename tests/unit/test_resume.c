@@ -543,7 +543,7 @@ static void what_was_set_is_in_force_again(void **st)
 	assert_near(w.l.cycle.gap.servo_v, 47, 0);
 	assert_near(w.l.cycle.jump.height_mm, 0.25, 0);
 	assert_near(w.l.cycle.override, 0.25, 0);
-	assert_true(w.l.cycle.out.negative);
+	assert_true(io_is_negative(&w.l.cycle.out));
 	assert_int_equal(w.l.cycle.conditions.nsets, 3);
 	/* And a second time, with nothing set in between. */
 	period(&w, OPEN_V);

@@ -160,7 +160,10 @@ static double removal_with(double peak_a, double on_us, double off_us)
 	quiet(&b.k);
 	b.k.sim.debris_per_mm = 0;
 	open_sim(&b, 1);
-	b.out.pulse = (struct io_pulse) { peak_a, on_us, off_us, NAN, true };
+	b.out.pulse[INTERP_TECH_PEAK_A] = peak_a;
+	b.out.pulse[INTERP_TECH_ON_US] = on_us;
+	b.out.pulse[INTERP_TECH_OFF_US] = off_us;
+	b.out.pulse[INTERP_TECH_ISO] = 1;
 	r = cut(&b, b.k.sim.best_gap_mm, 300);
 	close_sim(&b);
 	return r;
@@ -192,7 +195,7 @@ static void more_volts_ignite_in_a_wider_gap(void **st)
 	open_sim(&b, 1);
 	cycle_at(&b, b.k.sim.standoff_mm - 1.1 * b.k.sim.open_gap_mm, true);
 	assert_true(b.in.shares.open > 0.999F);
-	b.out.pulse.ignition_v = 2 * b.k.sim.open_v;
+	b.out.pulse[INTERP_TECH_IGNITION_V] = 2 * b.k.sim.open_v;
 	period(&b);
 	assert_true(b.in.shares.spark > 0.9F);
 	close_sim(&b);
@@ -272,7 +275,7 @@ static double wear_after(bool negative, double *ret_depth)
 	quiet(&b.k);
 	b.k.sim.wear_ratio = 0.02;
 	open_sim(&b, 1);
-	b.out.negative = negative;
+	b.out.pulse[INTERP_TECH_POLARITY] = negative ? -1 : 1;
 	for (int i = 0; i < 20; i++) {
 		cut(&b, b.k.sim.best_gap_mm, 500);
 		assert_true(result(&b).wear_mm > before);
@@ -453,7 +456,7 @@ static double hot_after(double lift_mm, double off_us, bool power)
 	before = result(&b).hot;
 	assert_true(before > 0.3);
 	from = b.out.place_mm;
-	b.out.pulse.off_us = off_us;
+	b.out.pulse[INTERP_TECH_OFF_US] = off_us;
 	for (int i = 1; i <= 100; i++)
 		cycle_at(&b, from - lift_mm * i / 100, power);
 	before = result(&b).hot / before;
@@ -585,17 +588,19 @@ static void drive(struct bench *b, struct rng *r)
 	b->out.target[rng_next(r) % IO_NAXES] = (int32_t)rng_next(r) >> 2;
 	b->out.power = rng_uniform(r) < 0.9;
 	b->out.rapid = rng_uniform(r) < 0.01;
-	b->out.negative = rng_next(r) & 1;
 	b->out.pump = rng_next(r) & 1;
 	b->out.path += rng_uniform(r) < 0.001;
 	b->out.off_path_mm = rng_uniform(r) < 0.1 ? rng_uniform(r) : 0;
-	if (rng_uniform(r) < 0.01)
-		b->out.pulse = (struct io_pulse) {
-			random_in(r, 0.01, 1e3), random_in(r, 0.01, 1e4),
-			rng_uniform(r) < 0.5 ? NAN : random_in(r, 0.01, 1e4),
-			rng_uniform(r) < 0.5 ? NAN : random_in(r, 1, 500),
-			rng_next(r) & 1,
-		};
+	b->out.pulse[INTERP_TECH_POLARITY] = rng_next(r) & 1 ? -1 : 1;
+	if (rng_uniform(r) < 0.01) {
+		b->out.pulse[INTERP_TECH_PEAK_A] = random_in(r, 0.01, 1e3);
+		b->out.pulse[INTERP_TECH_ON_US] = random_in(r, 0.01, 1e4);
+		b->out.pulse[INTERP_TECH_OFF_US] = rng_uniform(r) < 0.5 ?
+			NAN : random_in(r, 0.01, 1e4);
+		b->out.pulse[INTERP_TECH_IGNITION_V] = rng_uniform(r) < 0.5 ?
+			NAN : random_in(r, 1, 500);
+		b->out.pulse[INTERP_TECH_ISO] = rng_next(r) & 1 ? 1 : 0;
+	}
 	period(b);
 }
 

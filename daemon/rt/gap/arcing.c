@@ -10,7 +10,9 @@
 
 static double own_off_us(const struct cycle *c)
 {
-	return c->out.pulse.off_us > 0 ? c->out.pulse.off_us : c->gap.off_us;
+	const double off_us = c->out.pulse[INTERP_TECH_OFF_US];
+
+	return off_us > 0 ? off_us : c->gap.off_us;
 }
 
 /* Can this machine take this step? */
@@ -120,7 +122,7 @@ double arcing_off_us(const struct cycle *c)
 			      c->arcing.rung : ARCING_OFF_LAST;
 
 	if (step == ARCING_NONE || !has(c, ARCING_OFF_FIRST))
-		return c->out.pulse.off_us;
+		return c->out.pulse[INTERP_TECH_OFF_US];
 	return own_off_us(c) *
 	       (1 + step * (c->gap.arcing_off_max - 1) / ARCING_OFF_LAST);
 }

@@ -5,43 +5,10 @@
 #include "gap/conditions.h"
 
 #include "cycle.h"
+#include "process.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <string.h>
-
-#define AT(field)	offsetof(struct cycle, field)
-
-/* The fields that are used as they are. jump_every_s, abort_count, iso and
- * polarity are not among them. */
-static const struct {
-	enum interp_tech_id id;
-	size_t at;
-} rows[] = {
-	{ INTERP_TECH_PEAK_A,		AT(out.pulse.peak_a) },
-	{ INTERP_TECH_ON_US,		AT(out.pulse.on_us) },
-	{ INTERP_TECH_OFF_US,		AT(out.pulse.off_us) },
-	{ INTERP_TECH_IGNITION_V,	AT(out.pulse.ignition_v) },
-	{ INTERP_TECH_SERVO_V,		AT(gap.servo_v) },
-	{ INTERP_TECH_WINDOW_LOW_V,	AT(gap.window_low_v) },
-	{ INTERP_TECH_WINDOW_HIGH_V,	AT(gap.window_high_v) },
-	{ INTERP_TECH_SHORT_V,		AT(gap.short_v) },
-	{ INTERP_TECH_OPEN_V,		AT(gap.open_v) },
-	{ INTERP_TECH_GAIN_MM_S_V,	AT(gap.gain_mm_s_v) },
-	{ INTERP_TECH_INTEGRAL_S,	AT(gap.integral_s) },
-	{ INTERP_TECH_FEED_MAX_MM_S,	AT(gap.feed_max_mm_s) },
-	{ INTERP_TECH_RETRACT_MM_S,	AT(gap.retract_mm_s) },
-	{ INTERP_TECH_JUMP_MM,		AT(jump.height_mm) },
-	{ INTERP_TECH_JUMP_DEPTH_MM,	AT(jump.every_mm) },
-	{ INTERP_TECH_JUMP_SHORT_OF_MM,	AT(jump.short_of_mm) },
-};
-
-#define NROWS	(sizeof(rows) / sizeof(rows[0]))
-
-static double *value_at(struct cycle *c, size_t row)
-{
-	return (double *)(void *)((char *)c + rows[row].at);
-}
 
 static double period_s(const struct cycle *c)
 {
@@ -63,38 +30,37 @@ static struct interp_tech wanted(const struct cycle *c, uint16_t cond)
 	return t;
 }
 
+/* NAN: nobody says it. */
 static void put_polarity(struct cycle *c)
 {
 	const struct conditions *p = &c->conditions;
-	const struct interp_tech *t = &c->cursor.p.conds[p->cond].tech;
+	double *to = &c->out.pulse[INTERP_TECH_POLARITY];
 
-	c->out.negative = p->said ? p->said_negative :
-			  t->v[INTERP_TECH_POLARITY] < 0;
+	*to = p->said ? (p->said_negative ? -1 : 1) :
+	      c->cursor.p.conds[p->cond].tech.v[INTERP_TECH_POLARITY];
 	for (uint32_t i = 0; i < p->nsets; i++) {
 		if (p->set[i].cond == p->cond &&
 		    p->set[i].field == INTERP_TECH_POLARITY)
-			c->out.negative = p->set[i].value < 0;
+			*to = p->set[i].value;
 	}
 }
 
 static void put(struct cycle *c, const struct interp_tech *t)
 {
-	const double every_s = t->v[INTERP_TECH_JUMP_EVERY_S];
-
 	c->gap = c->config.gap;
 	c->jump = c->config.jump;
-	c->out.pulse = (struct io_pulse) { NAN, NAN, NAN, NAN, false };
-	for (size_t i = 0; i < NROWS; i++) {
-		if (interp_tech_given(t, rows[i].id))
-			*value_at(c, i) = t->v[rows[i].id];
+	for (int i = 0; i < INTERP_NTECH; i++) {
+		double *at = process_setting((enum interp_tech_id)i, &c->gap,
+					     &c->jump);
+
+		if (i < INTERP_NGENERATOR)
+			c->out.pulse[i] = t->v[i];
+		else if (at && interp_tech_given(t, (enum interp_tech_id)i))
+			*at = t->v[i];
 	}
-	c->out.pulse.iso = t->v[INTERP_TECH_ISO] > 0;
-	if (interp_tech_given(t, INTERP_TECH_ABORT_COUNT))
-		c->gap.abort_count =
-			(uint32_t)t->v[INTERP_TECH_ABORT_COUNT];
-	if (every_s > 0)
+	if (t->v[INTERP_TECH_JUMP_EVERY_S] > 0)
 		c->jump.every.cycles = (uint64_t)fmax(1, floor(
-			every_s / period_s(c) + 0.5));
+			c->jump.every.s / period_s(c) + 0.5));
 	put_polarity(c);
 }
 
@@ -107,17 +73,6 @@ static bool gives_nothing(const struct interp_tech *t)
 	return true;
 }
 
-/* The value of the machine file; NAN for a field that its [gap] does not
- * have. */
-static double machine_value(const struct cycle *c, size_t row)
-{
-	const size_t at = rows[row].at - AT(gap);
-
-	return rows[row].at >= AT(gap) && at < sizeof(c->gap) ?
-	       *(const double *)(const void *)
-			((const char *)&c->config.gap + at) : NAN;
-}
-
 /* Are these values, put over those of this machine, in order? */
 static bool fits(const struct cycle *c, const struct interp_tech *t)
 {
@@ -127,9 +82,7 @@ static bool fits(const struct cycle *c, const struct interp_tech *t)
 		return true;
 	if (!interp_tech_ok(t))
 		return false;
-	interp_tech_clear(&sum);
-	for (size_t i = 0; i < NROWS; i++)
-		sum.v[rows[i].id] = machine_value(c, i);
+	process_base(&sum, &c->config.gap, &c->config.jump);
 	interp_tech_over(&sum, t);
 	return !interp_tech_order(&sum);
 }
@@ -169,13 +122,8 @@ void conditions_say(struct cycle *c, bool negative)
 
 static bool is_used(uint32_t field)
 {
-	for (size_t i = 0; i < NROWS; i++) {
-		if (rows[i].id == field)
-			return true;
-	}
-	return field == INTERP_TECH_JUMP_EVERY_S ||
-	       field == INTERP_TECH_ABORT_COUNT ||
-	       field == INTERP_TECH_ISO || field == INTERP_TECH_POLARITY;
+	return field < INTERP_NTECH &&
+	       interp_tech_is_live((enum interp_tech_id)field);
 }
 
 /* The slot where the field is set in this condition, or where it would be
@@ -251,22 +199,12 @@ bool conditions_restore(struct cycle *c, const struct conditions_set *sets,
 
 double conditions_value(const struct cycle *c, uint32_t field)
 {
-	switch (field) {
-	case INTERP_TECH_JUMP_EVERY_S:
-		return (double)c->jump.every.cycles * period_s(c);
-	case INTERP_TECH_ABORT_COUNT:
-		return c->gap.abort_count;
-	case INTERP_TECH_ISO:
-		return c->out.pulse.iso;
-	case INTERP_TECH_POLARITY:
-		return c->out.negative ? -1 : 1;
-	default:
-		break;
-	}
-	for (size_t i = 0; i < NROWS; i++) {
-		if (rows[i].id == field)
-			return *(const double *)(const void *)
-				((const char *)c + rows[i].at);
-	}
-	return NAN;
+	struct interp_tech now;
+
+	if (!is_used(field))
+		return (double)NAN;
+	if (field == INTERP_TECH_POLARITY)
+		return io_is_negative(&c->out) ? -1 : 1;
+	process_base(&now, &c->gap, &c->jump);
+	return field < INTERP_NGENERATOR ? c->out.pulse[field] : now.v[field];
 }

@@ -38,7 +38,7 @@ double gap_window_low_v(const struct cycle *c)
 
 static double ignition_v(const struct cycle *c)
 {
-	const double asked = c->out.pulse.ignition_v;
+	const double asked = c->out.pulse[INTERP_TECH_IGNITION_V];
 
 	return asked > 0 ? asked : c->gap.ignition_v;
 }

@@ -109,7 +109,7 @@ void retract_watch(struct cycle *c)
 	if (c->state != STATE_RETRACT)
 		return;
 	c->totals.retract_mm_max = fmax(c->totals.retract_mm_max, back_mm(c));
-	if (g->abort_count && r->in_row >= g->abort_count) {
+	if (g->abort_count > 0 && r->in_row >= g->abort_count) {
 		fault_latch(&c->fault, FAULT_RETRACT_COUNT);
 		return;
 	}

@@ -8,66 +8,11 @@
 #include <math.h>
 #include <string.h>
 
-/* Where the machine file has the same value, its range is the same. */
-/* clang-format off */
+#define FIELD(id, ...)	[INTERP_TECH_##id] = { __VA_ARGS__ },
+
 const struct interp_tech_field interp_tech_field[INTERP_NTECH] = {
-	[INTERP_TECH_PEAK_A] = { "peak_a", "A", 0, 1000,
-		false, "peak current of a pulse" },
-	[INTERP_TECH_ON_US] = { "on_us", "us", 0.1, 100000,
-		false, "length of a pulse" },
-	[INTERP_TECH_OFF_US] = { "off_us", "us", 0.1, 100000,
-		false, "pause after a pulse" },
-	[INTERP_TECH_POLARITY] = { "polarity", "", -1, 1,
-		true, "of the electrode: 1 positive, -1 negative" },
-	[INTERP_TECH_IGNITION_V] = { "ignition_v", "V", 10, 1000,
-		false, "open-circuit voltage" },
-	[INTERP_TECH_ISO] = { "iso", "", 0, 1,
-		true, "1: the pulse is timed from its ignition" },
-	[INTERP_TECH_SERVO_V] = { "servo_v", "V", 0.1, 500,
-		false, "mean gap voltage to hold" },
-	[INTERP_TECH_WINDOW_LOW_V] = { "window_low_v", "V", 0, 500,
-		false, "the servo stands from here ..." },
-	[INTERP_TECH_WINDOW_HIGH_V] = { "window_high_v", "V", 0, 500,
-		false, "... to here" },
-	[INTERP_TECH_SHORT_V] = { "short_v", "V", 0, 500,
-		false, "below: a short circuit" },
-	[INTERP_TECH_OPEN_V] = { "open_v", "V", 0.1, 500,
-		false, "above: no sparks yet" },
-	[INTERP_TECH_GAIN_MM_S_V] = { "gain_mm_s_v", "mm/s/V", 1e-6, 10,
-		false, "feed per volt outside the window" },
-	[INTERP_TECH_INTEGRAL_S] = { "integral_s", "s", 0, 1000,
-		false, "reset time of the integral; 0: none" },
-	[INTERP_TECH_FEED_MAX_MM_S] = { "feed_max_mm_s", "mm/s", 1e-6, 100,
-		false, "fastest feed while eroding" },
-	[INTERP_TECH_RETRACT_MM_S] = { "retract_mm_s", "mm/s", 0.001, 1000,
-		false, "back along the path on a short" },
-	[INTERP_TECH_ABORT_COUNT] = { "abort_count", "", 0, 1e9,
-		true,
-		"retracts without erosion between, then a fault; 0: never" },
-	[INTERP_TECH_JUMP_MM] = { "jump_mm", "mm", 0, 500,
-		false, "height of a jump; 0: none" },
-	[INTERP_TECH_JUMP_EVERY_S] = { "jump_every_s", "s", 0.01, 86400,
-		false, "erosion between two jumps" },
-	[INTERP_TECH_JUMP_DEPTH_MM] = { "jump_depth_mm", "mm", 0, 1000,
-		false, "depth eroded between two jumps; 0: by time" },
-	[INTERP_TECH_JUMP_SHORT_OF_MM] = { "jump_short_of_mm", "mm", 0, 10,
-		false, "a jump comes back to this far above the cut" },
-	[INTERP_TECH_GAP_MM] = { "gap_mm", "mm", 0, 10,
-		false, "spark gap, per side" },
-	[INTERP_TECH_ALLOWANCE_MM] = { "allowance_mm", "mm", 0, 100,
-		false, "left for the conditions after it, per side" },
-	[INTERP_TECH_ORBIT_MM] = { "orbit_mm", "mm", 0, 100,
-		false, "radius of the orbit, per side" },
-	[INTERP_TECH_ORBIT_STEP_DEG] = { "orbit_step_deg", "deg", 0, 90,
-		false, "step of a spherical orbit" },
-	[INTERP_TECH_REMOVAL_MM3_MIN] = { "removal_mm3_min", "mm3/min",
-		0, 1e6, false, "removal to expect" },
-	[INTERP_TECH_WEAR] = { "wear", "", 0, 10,
-		false, "electrode lost per part removed" },
-	[INTERP_TECH_ROUGHNESS_UM] = { "roughness_um", "um Ra", 0, 1000,
-		false, "surface to expect" },
+	INTERP_TECH_ROWS(FIELD)
 };
-/* clang-format on */
 
 void interp_tech_clear(struct interp_tech *t)
 {

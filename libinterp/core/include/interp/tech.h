@@ -16,40 +16,80 @@
 
 #include <stdbool.h>
 
+/*
+ * T(id, name, unit, min, max, whole, help): one field a row.  Where the machine
+ * file has the same value, its range is the same.  The rows of the generator
+ * come first, then the others that the cycle goes by.
+ */
+/* clang-format off */
+#define INTERP_TECH_ROWS(T) \
+/* The generator: process.h of the daemon says how it is reached. */ \
+T(PEAK_A, "peak_a", "A", 0, 1000, false, \
+  "peak current of a pulse") \
+T(ON_US, "on_us", "us", 0.1, 100000, false, \
+  "length of a pulse") \
+T(OFF_US, "off_us", "us", 0.1, 100000, false, \
+  "pause after a pulse") \
+T(POLARITY, "polarity", "", -1, 1, true, \
+  "of the electrode: 1 positive, -1 negative") \
+T(IGNITION_V, "ignition_v", "V", 10, 1000, false, \
+  "open-circuit voltage") \
+T(ISO, "iso", "", 0, 1, true, \
+  "1: the pulse is timed from its ignition") \
+/* The gap servo. */ \
+T(SERVO_V, "servo_v", "V", 0.1, 500, false, \
+  "mean gap voltage to hold") \
+T(WINDOW_LOW_V, "window_low_v", "V", 0, 500, false, \
+  "the servo stands from here ...") \
+T(WINDOW_HIGH_V, "window_high_v", "V", 0, 500, false, \
+  "... to here") \
+T(SHORT_V, "short_v", "V", 0, 500, false, \
+  "below: a short circuit") \
+T(OPEN_V, "open_v", "V", 0.1, 500, false, \
+  "above: no sparks yet") \
+T(GAIN_MM_S_V, "gain_mm_s_v", "mm/s/V", 1e-6, 10, false, \
+  "feed per volt outside the window") \
+T(INTEGRAL_S, "integral_s", "s", 0, 1000, false, \
+  "reset time of the integral; 0: none") \
+T(FEED_MAX_MM_S, "feed_max_mm_s", "mm/s", 1e-6, 100, false, \
+  "fastest feed while eroding") \
+T(RETRACT_MM_S, "retract_mm_s", "mm/s", 0.001, 1000, false, \
+  "back along the path on a short") \
+T(ABORT_COUNT, "abort_count", "", 0, 1e9, true, \
+  "retracts without erosion between, then a fault; 0: never") \
+/* The jump. */ \
+T(JUMP_MM, "jump_mm", "mm", 0, 500, false, \
+  "height of a jump; 0: none") \
+T(JUMP_EVERY_S, "jump_every_s", "s", 0.01, 86400, false, \
+  "erosion between two jumps") \
+T(JUMP_DEPTH_MM, "jump_depth_mm", "mm", 0, 1000, false, \
+  "depth eroded between two jumps; 0: by time") \
+T(JUMP_SHORT_OF_MM, "jump_short_of_mm", "mm", 0, 10, false, \
+  "a jump comes back to this far above the cut") \
+/* Where it is used: sequences and orbits. */ \
+T(GAP_MM, "gap_mm", "mm", 0, 10, false, \
+  "spark gap, per side") \
+T(ALLOWANCE_MM, "allowance_mm", "mm", 0, 100, false, \
+  "left for the conditions after it, per side") \
+T(ORBIT_MM, "orbit_mm", "mm", 0, 100, false, \
+  "radius of the orbit, per side") \
+T(ORBIT_STEP_DEG, "orbit_step_deg", "deg", 0, 90, false, \
+  "step of a spherical orbit") \
+/* What it yields, for the table's reader. */ \
+T(REMOVAL_MM3_MIN, "removal_mm3_min", "mm3/min", 0, 1e6, false, \
+  "removal to expect") \
+T(WEAR, "wear", "", 0, 10, false, \
+  "electrode lost per part removed") \
+T(ROUGHNESS_UM, "roughness_um", "um Ra", 0, 1000, false, \
+  "surface to expect")
+/* clang-format on */
+
+#define INTERP_TECH_ID(id, ...)	INTERP_TECH_##id,
+
 enum interp_tech_id {
-	/* The generator. */
-	INTERP_TECH_PEAK_A,
-	INTERP_TECH_ON_US,
-	INTERP_TECH_OFF_US,
-	INTERP_TECH_POLARITY,		/* +1 or -1 */
-	INTERP_TECH_IGNITION_V,		/* open-circuit voltage */
-	INTERP_TECH_ISO,		/* 1: pulses of equal energy */
-	/* The gap servo. */
-	INTERP_TECH_SERVO_V,
-	INTERP_TECH_WINDOW_LOW_V,	/* between them: stand */
-	INTERP_TECH_WINDOW_HIGH_V,
-	INTERP_TECH_SHORT_V,
-	INTERP_TECH_OPEN_V,
-	INTERP_TECH_GAIN_MM_S_V,	/* proportional */
-	INTERP_TECH_INTEGRAL_S,		/* reset time; 0: none */
-	INTERP_TECH_FEED_MAX_MM_S,
-	INTERP_TECH_RETRACT_MM_S,
-	INTERP_TECH_ABORT_COUNT,	/* retracts in a row, then a fault */
-	/* The jump. */
-	INTERP_TECH_JUMP_MM,
-	INTERP_TECH_JUMP_EVERY_S,	/* of erosion */
-	INTERP_TECH_JUMP_DEPTH_MM,	/* of erosion; 0: by time */
-	INTERP_TECH_JUMP_SHORT_OF_MM,
-	/* Where it is used: sequences and orbits. */
-	INTERP_TECH_GAP_MM,		/* spark gap, per side */
-	INTERP_TECH_ALLOWANCE_MM,	/* left for the conditions after it */
-	INTERP_TECH_ORBIT_MM,		/* radius, per side */
-	INTERP_TECH_ORBIT_STEP_DEG,	/* of a spherical orbit */
-	/* What it yields, for the table's reader. */
-	INTERP_TECH_REMOVAL_MM3_MIN,
-	INTERP_TECH_WEAR,		/* electrode lost per part removed */
-	INTERP_TECH_ROUGHNESS_UM,	/* Ra */
-	INTERP_NTECH
+	INTERP_TECH_ROWS(INTERP_TECH_ID)
+	INTERP_NTECH,
+	INTERP_NGENERATOR = INTERP_TECH_SERVO_V	/* those of the generator */
 };
 
 struct interp_tech {
