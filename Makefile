@@ -61,13 +61,13 @@ SANFLAGS = $(if $(filter 1,$(SAN)),-fsanitize=address$(,)undefined -fno-sanitize
 
 OPT	?= -O2
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
-CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections -MMD -MP \
+CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections \
 	  -DEDM_VERSION='"$(VERSION)"' -DEDM_DIALECTS='"$(DIALECTS)"' $(SANFLAGS)
 # A shim round a library of C++, whose own headers are not ours to mend.
 CXXFLAGS = -std=c++17 $(OPT) -g -Wall -Wextra -Wshadow $(if $(WERROR),-Werror) \
 	   -isystem /usr/include/eigen3 \
 	   $(subst -I,-isystem ,$(filter -I%,$(shell pkg-config --cflags ompl))) \
-	   -MMD -MP $(SANFLAGS)
+	   $(SANFLAGS)
 HARDEN	=
 LDFLAGS	= -Wl,--gc-sections,--as-needed $(HARDEN) $(SANFLAGS)
 
@@ -183,9 +183,17 @@ all: $(PROGRAMS) $(SHEETS:clients/plot/%=$(B)/share/edmd/%)
 # Read by the programs when they draw, so it stands beside them.
 $(B)/share/edmd/%: clients/plot/%
 	@mkdir -p $(@D)
-	$(Q)cp $< $@
+	$(Q)$(call whole,cp $<)
 
 # -- Compile ------------------------------------------------------------------
+
+# What is made has another name until it is whole: a kill leaves nothing that
+# would be taken for it later.  $1: the command, up to the name of what it makes.
+whole	= $1 $@.new && mv $@.new $@
+# The same for an object, with the names of the headers it was made from.
+object	= $1 -MMD -MP -MT $@ -MF $@.d.new -c -o $@.new $< && \
+	  mv $@.d.new $@.d && mv $@.new $@
+.DELETE_ON_ERROR:
 
 $(B)/dialect_files.c: $(DIALECTS:%=dialects/%.ini) Makefile
 	$(call say,GEN,$@)
@@ -194,21 +202,22 @@ $(B)/dialect_files.c: $(DIALECTS:%=dialects/%.ini) Makefile
 		echo 'const struct dialect_file nc_dialect_files[] = {'; \
 		for d in $(DIALECTS); do echo "{ \"$$d\","; \
 			sed 's/[\\"]/\\&/g; s/.*/"&\\n"/' dialects/$$d.ini; \
-			echo '},'; done; echo '{ 0, 0 } };'; } > $@
+			echo '},'; done; echo '{ 0, 0 } };'; } > $@.new
+	$(Q)mv $@.new $@
 
 $(B)/dialect_files.o: $(B)/dialect_files.c
 	$(call say,CC,$<)
-	$(Q)$(CC) $(CFLAGS) -Wno-overlength-strings $(INC_compile) -c -o $@ $<
+	$(Q)$(call object,$(CC) $(CFLAGS) -Wno-overlength-strings $(INC_compile))
 
 $(B)/%.o: %.c
 	$(call say,CC,$<)
 	@mkdir -p $(@D)
-	$(Q)$(CC) $(CFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
+	$(Q)$(call object,$(CC) $(CFLAGS) $(INC_$(call part,$<)))
 
 $(B)/%.o: %.cc
 	$(call say,CXX,$<)
 	@mkdir -p $(@D)
-	$(Q)$(CXX) $(CXXFLAGS) $(INC_$(call part,$<)) -c -o $@ $<
+	$(Q)$(call object,$(CXX) $(CXXFLAGS) $(INC_$(call part,$<)))
 
 # From text to program there are many short loops over the axes, and roots whose
 # errno nobody asks for.
@@ -250,16 +259,19 @@ $(B)/messages/lcm.stamp: messages/edm.lcm
 $(B)/messages/edm_lcm.o: $(B)/messages/lcm.stamp
 	$(call say,CC,$(@F))
 	$(Q)cat $(LCM_C) > $(@D)/edm_lcm_all.c
-	$(Q)$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) -c -o $@ $(@D)/edm_lcm_all.c
+	$(Q)$(call whole,$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) \
+		-c $(@D)/edm_lcm_all.c -o)
 
 $(B)/messages/edm.c: messages/edm.idl
 	$(call say,IDLC,$<)
-	@mkdir -p $(@D)
-	$(Q)idlc -o $(@D) $<
+	@mkdir -p $(@D)/new
+	$(Q)idlc -o $(@D)/new $<
+	$(Q)mv $(@D)/new/edm.h $(@D)
+	$(Q)mv $(@D)/new/edm.c $(@D)
 
 $(B)/messages/edm.o: $(B)/messages/edm.c
 	$(call say,CC,$(@F))
-	$(Q)$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) -c -o $@ $<
+	$(Q)$(call object,$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D))
 
 $(call obj,$(JOBS) $(CTL) $(CLIENT)): | $(B)/messages/lcm.stamp
 $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
@@ -269,14 +281,16 @@ $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
 define link
 $(call say,LD,$@)
 @mkdir -p $(@D)
-$(Q)$(CC) $(LDFLAGS) $(LTO_LINK) -o $@ $(filter %.o,$^) $(filter %.a,$^) $1
+$(Q)$(call whole,$(CC) $(LDFLAGS) $(LTO_LINK) $(filter %.o,$^) \
+	$(filter %.a,$^) $1 -o)
 endef
 
 # An archive for each floor of libinterp: what links one can reach no other.
 define archive
 $(call say,AR,$@)
-@rm -f $@
-$(Q)$(AR) rcs $@ $^
+@rm -f $@.new
+$(Q)$(AR) rcs $@.new $^
+$(Q)mv $@.new $@
 endef
 
 $(COMMON_A): $(call obj,$(COMMON))
@@ -569,7 +583,7 @@ clang:
 	$(Q)printf '%s\n' $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) \
 		$(VALUES) $(SHM) $(SETUP) $(EDMD) $(JOBS) $(SIM) $(CTL) $(PLOT) \
 		$(PANEL_C) $(PLAN) $(wildcard clients/dds/*.c) | \
-		xargs -P $(SIDE) -n 8 clang -fsyntax-only -Werror $(filter-out -g -MMD -MP,$(CFLAGS)) \
+		xargs -P $(SIDE) -n 8 clang -fsyntax-only -Werror $(filter-out -g,$(CFLAGS)) \
 			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
 			$(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp))
 
@@ -682,6 +696,7 @@ run-fuzz_block run-fuzz_command: FUZZ_MORE = -max_len=512 -len_control=0
 # Of our objects, watched; all that are not asked for stay in the archive.
 FUZZ_CC	= clang -std=c11 -D_GNU_SOURCE -g -O1 -DEDM_VERSION='"$(VERSION)"' \
 	  -fno-sanitize-recover=all
+FUZZ_SAN = -fsanitize=fuzzer-no-link$(,)address$(,)undefined
 fuzz_o	= $(patsubst %.c,$(B)/watched/%.o,$1)
 FUZZ_A	:= $(B)/watched/all.a
 INC_fuzz = -Itests/unit $(INC_edmd) $(INC_libinterp)
@@ -692,21 +707,20 @@ FUZZ_PARTS = $(INTERP) $(COMMON) $(RT) $(WORDS) $(SETUP) \
 $(B)/watched/%.o: %.c
 	$(call say,CLANG,$<)
 	$(Q)mkdir -p $(@D)
-	$(Q)$(FUZZ_CC) -MMD -MP -fsanitize=fuzzer-no-link,address,undefined \
-		$(INC_$(call part,$<)) -c -o $@ $<
+	$(Q)$(call object,$(FUZZ_CC) $(FUZZ_SAN) $(INC_$(call part,$<)))
 
 $(B)/watched/dialect_files.o: $(B)/dialect_files.c
 	$(Q)mkdir -p $(@D)
-	$(Q)$(FUZZ_CC) -fsanitize=fuzzer-no-link,address,undefined \
-		$(INC_compile) -c -o $@ $<
+	$(Q)$(call object,$(FUZZ_CC) $(FUZZ_SAN) $(INC_compile))
 
 $(FUZZ_A): $(call fuzz_o,$(FUZZ_PARTS)) $(B)/watched/dialect_files.o
 	$(archive)
 
 $(B)/fuzz_%: $(B)/watched/tests/fuzz/fuzz_%.o $(FUZZ_A)
 	$(call say,LD,$@)
-	$(Q)$(FUZZ_CC) -fsanitize=fuzzer,address,undefined -o $@ $^ -lcmocka \
-		-lnlopt -lpthread -lm
+	$(Q)$(FUZZ_CC) -fsanitize=fuzzer,address,undefined -o $@.new $^ \
+		-lcmocka -lnlopt -lpthread -lm
+	$(Q)mv $@.new $@
 
 # -- Lint ---------------------------------------------------------------------
 
@@ -738,7 +752,7 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(call say,LINT,no two headers of one name)
 	$(Q)! printf '%s\n' $(notdir $(HEADERS)) | sort | uniq -d | grep .
 	$(call say,LINT,each header alone)
-	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g -MMD -MP,$(CFLAGS)) \
+	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g,$(CFLAGS)) \
 		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
 		$(INC_ctl) $(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
