@@ -13,6 +13,7 @@
 #include <assert.h>
 #include <errno.h>
 #include <ini.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define LINE_BYTES	1024		/* of a line, with its end and a NUL */
@@ -326,6 +327,15 @@ static void set_folder(struct machine_config *c, const char *path)
 		snprintf(c->folder, sizeof(c->folder), "%.*s", (int)n, path);
 }
 
+/* What the file says is nearer. */
+static void take_environment(struct machine_config *c)
+{
+	const char *url = getenv("LCM_DEFAULT_URL");
+
+	if (url && *url)
+		snprintf(c->lcm_url, sizeof(c->lcm_url), "%s", url);
+}
+
 int config_read(struct machine_config *c, const char *path,
 		struct interp_diag *diag)
 {
@@ -338,6 +348,7 @@ int config_read(struct machine_config *c, const char *path,
 	if (!r.f)
 		return -errno;
 	set_folder(&r.config, path);
+	take_environment(&r.config);
 
 	err = read_all(&r);
 	fclose(r.f);

@@ -36,6 +36,19 @@ static void the_built_in_machine_is_the_documented_one(void **state)
 	assert_int_equal(config_period_ns(&c), 1000000);
 }
 
+static void lcm_s_own_variable_gives_the_url_that_no_file_does(void **state)
+{
+	struct machine_config c;
+
+	(void)state;
+	setenv("LCM_DEFAULT_URL", "udpm://239.255.1.2:7700?ttl=0", 1);
+	read_good("", &c);
+	assert_string_equal(c.lcm_url, "udpm://239.255.1.2:7700?ttl=0");
+	read_good("[lcm]\nurl = udpm://239.255.1.3:7700?ttl=0\n", &c);
+	assert_string_equal(c.lcm_url, "udpm://239.255.1.3:7700?ttl=0");
+	unsetenv("LCM_DEFAULT_URL");
+}
+
 static void every_default_passes_the_check_between_keys(void **state)
 {
 	struct machine_config c, d;
@@ -301,6 +314,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_wire_machine_has_defaults_of_its_own),
 		cmocka_unit_test(the_built_in_machine_is_the_documented_one),
+		cmocka_unit_test(
+			lcm_s_own_variable_gives_the_url_that_no_file_does),
 		cmocka_unit_test(every_default_passes_the_check_between_keys),
 		cmocka_unit_test(a_key_changes_its_value_and_no_other),
 		cmocka_unit_test(comments_blanks_and_line_ends_do_not_matter),
