@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random contours with other leads, open ones, several in one program, and with a
-taper, against another geometry.  EDM_SEED repeats a run, EDM_RUNS says how many.
+"""Random contours with other leads, open ones, and several in one program; leads of
+any kind, in all dialects and with a taper; against another geometry.  EDM_SEED repeats a run, EDM_RUNS says how many.
 """
 import os
 import random
 import re
 
+import numpy as np
 import pytest
 from edmsim import run, seeded
 from shapely import affinity
+from shapely.geometry import LineString
 from test_wire_random import BOUND_MM
+from test_wire_taper import HEIGHT, WIRE, planes, rows_of
+from wire_lead_arcs import Leaning, Led, hausdorff, lead_ways, sound_contour
 from wire_leads import ArcLed, Open, many
-from wire_oracle import path_of, read_iso
+from wire_oracle import UM, path_of, read_iso
 
 RUNS = int(os.environ.get("EDM_RUNS", 25))
 
@@ -28,9 +32,9 @@ def plain(tmp_path_factory):
     return ini
 
 
-def ways_of(plain, text):
+def ways_of(plain, text, *more):
     """The ways, or None if it is refused; and what was said."""
-    r = run("--machine", plain, "--emit", "iso", text=text)
+    r = run("--machine", plain, "--emit", "iso", *more, text=text)
     assert r.returncode in (0, 1, 65), (r.returncode, r.stderr)
     said = r.stderr.decode()
     return None if r.returncode else read_iso(r.stdout.decode()), said
@@ -118,3 +122,110 @@ def test_leads_from_odd_places(hole, lead, end, found):
     r = run("--check", text=text)
     assert r.returncode == (65 if found else 0), r.stderr
     assert not found or found in r.stderr.decode(), r.stderr
+
+
+# -- Leads of any kind --------------------------------------------------------
+
+LEAD_MM = 2.5 * UM      # its ends are rounded to pulses, and so are centres
+
+
+def assert_goes_as_written(lead, ways, out, by, about):
+    way = path_of(ways)
+    want = lead.way(by)
+    assert hausdorff(way, want) < LEAD_MM, about
+    assert abs(way.length - want.length) < 10 * UM, about
+    assert hausdorff(way, lead.written()) < by + LEAD_MM, about
+    clockwise = lead.centre and (lead.sense > 0) == out
+    assert all(w[3][2] == clockwise for w in ways if w[3]), about
+
+
+def assert_led(led, ways, said):
+    c = led.contour
+    verdicts = led.verdicts
+    about = f"{verdicts}: {said}\n{led.text()}"
+    if "close" in verdicts:
+        return None
+    assert (ways is None) == ("refuse" in verdicts), about
+    if not ways:
+        assert "a lead " in said, about
+        lines = [4, len(c.ring) + 5]
+        bad = [k for k, v in zip(lines, verdicts) if v == "refuse"]
+        assert int(re.search(r"-:(\d+):", said)[1]) in bad, about
+        return "refuse"
+    ways = [w for w in ways if w[0] != "G0"]
+    mine, ways = lead_ways(ways, led.leads[0], False)
+    assert_goes_as_written(led.leads[0], mine, False, c.offset, about)
+    mine, ways = lead_ways(ways, led.leads[1], True)
+    assert_goes_as_written(led.leads[1], mine, True, c.offset, about)
+    path = path_of(ways)
+    assert path.distance(c.poly.exterior) >= c.offset - BOUND_MM, about
+    assert c.left_by(path) < BOUND_MM, about
+    return "cut"
+
+
+def test_leads_go_round_their_own_centres_or_are_refused(plain):
+    rnd = contours()
+    counts = {}
+    for i in range(RUNS):
+        contour = sound_contour(rnd)
+        for _ in range(4):
+            led = Led(rnd, contour)
+            got = assert_led(led, *ways_of(plain, led.text()))
+            counts[got] = counts.get(got, 0) + 1
+    print(counts)
+    assert counts["cut"] > RUNS and counts["refuse"] > RUNS / 2
+    assert counts.get(None, 0) < RUNS
+
+
+# Of each dialect with an offset: register, centres from the start of an arc.
+DIALECTS = {
+    "generic": ("D1", True), "linuxcnc": ("D1", True), "agie": ("D1", True),
+    "agievision": ("D1", True), "charmilles-robofil": ("D1", False),
+    "charmilles-robofil-440": ("D1", True), "chmer": ("H1", True),
+    "fanuc-wire": ("D1", True), "makino": ("H1", True),
+    "mastercam-wire": ("D1", True), "skd2": ("H1", True),
+    "sodick-wire": ("H1", True),
+}
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+def test_leads_are_the_same_in_all_dialects(tmp_path, dialect):
+    rnd = contours()
+    register, relative = DIALECTS[dialect]
+    contour = sound_contour(rnd)
+    ini = tmp_path / "m.ini"
+    ini.write_text(f"[machine]\nname = m\n[wire]\n"
+                   f"offset_1_mm = {contour.offset}\n")
+    cut = 0
+    for _ in range(max(RUNS // 3, 1)):
+        led = Led(rnd, contour)
+        text = led.text(register, "G90 F200." if dialect in
+                        ("generic", "linuxcnc") else "G90", relative)
+        cut += assert_led(led, *ways_of(ini, text, "--dialect", dialect)) == \
+            "cut"
+    assert cut
+
+
+def test_leads_go_round_their_own_centres_on_both_planes():
+    rnd = contours()
+    counts = {"cut": 0, "refuse": 0, "close": 0}
+    for i in range(RUNS // 2):
+        led = Leaning(rnd, HEIGHT)
+        r = run("--machine", WIRE, "--check", text=led.text())
+        said = r.stderr.decode()
+        about = f"{i}: {led.verdicts}: {said}\n{led.text()}"
+        verdict = min(led.verdicts, key=["close", "refuse", "cut"].index)
+        counts[verdict] += 1
+        if verdict == "close":
+            continue
+        assert r.returncode == (0 if verdict == "cut" else 65), about
+        assert not r.returncode or "a lead " in said, about
+        if r.returncode:
+            continue
+        for by, at in zip(led.by, planes(rows_of(led.text()))):
+            for lead, line in zip(led.leads, (4, 10)):
+                first = np.flatnonzero(at[:, 0] == line)
+                on = LineString(at[first[0] - 1:first[-1] + 1, 1:])
+                assert hausdorff(on, lead.way(by)) < LEAD_MM + UM, about
+    print(counts)
+    assert counts["cut"] > RUNS / 6 and counts["refuse"] > 1

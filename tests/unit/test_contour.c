@@ -215,6 +215,9 @@ static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
 	assert_refused(w, "F5\nG41 D1 G1 X.11\nX8\n", 2,
 		       "a lead of 0.1100 mm for a change of offset of 0.1100");
 	assert_refused(w, "F5 G41 D1 G1 X5\nX8\nG40 Y.05\n", 3, "a lead of");
+	assert_refused(w, "F5 G0 X4.9 Y.1\nG41 D1 G3 X5 Y0 I.1\nG1 X8\n", 2,
+		       "a lead on an arc of 0.1000 mm radius whose end the wire "
+		       "passes at 0.1100 mm, by the contour of line 3");
 	assert_refused(w, "F5 G41 D1 G1 X5\nG18 G2 X9 I2\n", 2, "plane XY");
 	assert_refused(w, "F5 G41 D1 G1 X5\nX6\nZ4\nX9\n", 3, "another axis");
 	assert_refused(w, "F5\nG41 G1 X5\n", 2,
@@ -226,6 +229,19 @@ static void what_the_wire_cannot_reach_is_refused_with_its_line(void **st)
 		       "H1 on a line that changes the units");
 	assert_refused(w, "H1000=1\n", 1, "out of range");
 	assert_refused(w, "D1.5\n", 1, "not a whole");
+}
+
+/* One of 1 mm that touches the contour is one of 0.89 mm for the wire. */
+static void a_lead_on_an_arc_keeps_its_centre(void **st)
+{
+	static const struct at want[] = {
+		{ 4, 1, 0, 0 }, { 4.11, 1, 0, 0 }, { 4.370675, .370675, 0, 0 },
+		{ 5, .11, 0, 0 }, { 8, .11, 0, 0 }, { 8, 1.5, 0, 0 },
+	};
+
+	(void)st;
+	assert_path(&no_guides, "F5 G0 X4 Y1\nG41 D1 G3 X5 Y0 I1\nG1 X8\n"
+		    "G40 Y1.5\n", want, N(want));
 }
 
 static void an_inside_radius_equal_to_the_offset_is_a_point(void **st)
@@ -692,6 +708,7 @@ int main(void)
 		cmocka_unit_test(a_line_and_an_arc_meet_inside),
 		cmocka_unit_test(the_register_may_change_on_the_way),
 		cmocka_unit_test(what_the_wire_cannot_reach_is_refused_with_its_line),
+		cmocka_unit_test(a_lead_on_an_arc_keeps_its_centre),
 		cmocka_unit_test(an_inside_radius_equal_to_the_offset_is_a_point),
 		cmocka_unit_test(u_and_v_are_the_lean_in_the_dialects),
 		cmocka_unit_test(a_leaning_arc_without_its_centre_is_refused),

@@ -215,8 +215,10 @@ static bool is_own_end(const struct track_work *w, const struct track_elem *e,
 {
 	const struct face *f = w->job->face;
 
+	const int lead = track_lead_of(w, (uint32_t)(e - w->elem));
+
 	return (id == 0 || id == f->n - 1) &&
-	       (!f->closed || w->job->lead[e != w->elem].through);
+	       (!f->closed || w->job->lead[lead].through);
 }
 
 static bool ask(void *arg, uint32_t id)
@@ -249,12 +251,10 @@ bool clear_is(struct track_work *w, uint32_t e, double t0, double t1)
 {
 	struct question k = { .w = w, .e = &w->elem[e], .clear = true };
 
-	if (w->job->side == 0)
-		return true;
 	if (w->sides)
 		return face_side_is(w->sides, w, e, t0, t1);
-	if (k.e->dead)
-		return false;
+	if (k.e->dead || w->job->side == 0)
+		return !k.e->dead;
 	k.c = t0 == 0 && t1 == 1 ? k.e->c : curve_part(&k.e->c, t0, t1);
 	k.mid = curve_at(&k.c, 0.5);
 	k.half_mm = curve_length(&k.c) / 2;

@@ -135,7 +135,7 @@ static int take_one(struct contour *k, struct contour_motion *m,
 	m->slope = k->slope;
 	m->corner = k->corner;
 	m->lead = contour_leads(k);
-	for (int p = 0; p < 2; p++)
+	for (int p = 0; !m->lead && p < 2; p++)
 		m->c[p] = curve_evened(&m->c[p]);
 	err = check_lead(k, m, diag);
 	if (!err && !is_on(k->last_offset_mm, k->last_slope) && !k->recording)

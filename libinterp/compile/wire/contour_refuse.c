@@ -66,6 +66,17 @@ static int refuse_near_lead(const struct contour *k,
 				     f->wanted_mm);
 }
 
+static int refuse_round(const struct contour *k, const struct track_fault *f,
+			int plane, struct interp_diag *diag)
+{
+	diag->line = k->m[f->a].word.line;
+	return interp_diag_say(diag, "a lead on an arc of %.4f mm radius whose "
+			       "end the wire passes at %.4f mm, by the contour "
+			       "of line %u%s; a larger radius, or a straight "
+			       "lead", f->found_mm, f->wanted_mm,
+			       k->m[f->b].word.line, plane_name(plane));
+}
+
 static int refuse_crowded(const struct contour *k, const struct track_fault *f,
 			  struct interp_diag *diag)
 {
@@ -81,6 +92,8 @@ int contour_refuse_track(const struct contour *k, const struct track_fault *f,
 {
 	if (f->kind == TRACK_LEAD)
 		return refuse_near_lead(k, f, plane, diag);
+	if (f->kind == TRACK_ROUND)
+		return refuse_round(k, f, plane, diag);
 	if (f->kind == TRACK_CROWDED)
 		return refuse_crowded(k, f, diag);
 	return refuse_stuck(k, f, plane, diag);

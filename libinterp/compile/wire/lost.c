@@ -40,15 +40,18 @@ const struct face_piece *track_piece(const struct track_work *w, uint32_t e)
 	const struct face *f = w->job->face;
 	const int64_t i = w->elem[e].piece;
 
-	return &f->piece[i >= 0 ? i : e == 0 ? 0 : f->n - 1];
+	return &f->piece[i >= 0 ? i : track_lead_of(w, e) ? f->n - 1 : 0];
 }
 
 /* Share of its piece at which element @e touches the outline, from the wire at
- * @at; 1 if it goes round the corner behind it. */
+ * @at; 1 if it goes round the corner behind it.  A lead touches the outline
+ * where it ends. */
 static double touch_of(const struct track_work *w, uint32_t e, struct vec at)
 {
 	const struct face_piece *p = track_piece(w, e);
 
+	if (w->elem[e].piece < 0)
+		return track_lead_of(w, e);
 	if (w->elem[e].round || curve_length(&p->c) < CURVE_SAME_MM)
 		return 1;
 	return fmin(fmax(curve_share(&p->c, at), 0), 1);
@@ -334,10 +337,12 @@ static bool is_plain(const struct between *k)
 
 bool lost_is(const struct track_work *w, const struct track_jump *j)
 {
+	/* But from a lead, the beginning of its piece may be missing. */
+	const bool is_same = w->elem[j->e].piece == w->elem[j->f].piece;
 	struct between k;
 
 	between_init(&k, w, j);
-	return k.n > 1 && !is_plain(&k) && is_any_missing(&k);
+	return !is_same && !is_plain(&k) && is_any_missing(&k);
 }
 
 double lost_point(const struct track_work *w, const struct track_jump *j)

@@ -22,6 +22,7 @@ struct step {
 	struct contour *k;
 	const struct contour_motion *m;
 	const struct curve *c;		/* on both planes */
+	double t[2];			/* its share of the motion */
 	struct interp_diag *diag;
 };
 
@@ -31,23 +32,29 @@ static int cut_part(const struct step *s, double t0, double t1,
 {
 	const struct curve part[2] = { curve_part(&s->c[0], t0, t1),
 				       curve_part(&s->c[1], t0, t1) };
+	const double t = s->t[0] + t1 * (s->t[1] - s->t[0]);
 	double end_mm[INTERP_NAXES];
 	int err;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
-		end_mm[i] = t1 >= 1 ? s->m->end_mm[i] : s->m->from_mm[i] +
-			    t1 * (s->m->end_mm[i] - s->m->from_mm[i]);
+		end_mm[i] = t >= 1 ? s->m->end_mm[i] : s->m->from_mm[i] +
+			    t * (s->m->end_mm[i] - s->m->from_mm[i]);
 	err = guides_cut(&s->k->guides, part, end_mm, w, s->diag);
 	if (err == -EINVAL)
 		s->diag->line = w->line;
 	return err;
 }
 
+static double length_of(const struct curve c[2])
+{
+	return fmax(curve_length(&c[0]), curve_length(&c[1]));
+}
+
 /* The motion, its last part slower if a corner follows. */
 static int cut_motion(const struct step *s, bool corner)
 {
 	const struct interp_wire *w = s->k->guides.wire;
-	const double len = fmax(curve_length(&s->c[0]), curve_length(&s->c[1]));
+	const double len = length_of(s->c);
 	const double before = corner ? fmin(w->corner_before_mm, len) : 0;
 	const double at = len > 0 ? 1 - before / len : 0;
 	struct interp_build_word slow = s->m->word;
@@ -59,6 +66,27 @@ static int cut_motion(const struct step *s, bool corner)
 		err = cut_part(s, 0, at, &s->m->word);
 	slow.feed_mm_s *= w->corner_feed_percent / 100;
 	return err < 0 ? err : cut_part(s, at, 1, &slow);
+}
+
+/* The motion as its @n curves, one behind the other. */
+static int cut_curves(const struct step *s, struct curve c[][2],
+		      uint32_t n, bool corner)
+{
+	double all = 0, done = 0;
+	int err = 0;
+
+	for (uint32_t i = 0; i < n; i++)
+		all += length_of(c[i]);
+	for (uint32_t i = 0; !err && i < n; i++) {
+		struct step part = *s;
+
+		part.c = c[i];
+		part.t[0] = all > 0 ? done / all : 1;
+		done += length_of(c[i]);
+		part.t[1] = i + 1 < n && all > 0 ? done / all : 1;
+		err = cut_motion(&part, corner && i + 1 == n);
+	}
+	return err;
 }
 
 /* Does corner control ask for care in front of @b? */
@@ -153,10 +181,10 @@ static struct vec lead_end(const struct contour *k, uint32_t i,
 }
 
 /*
- * Is the lead in, or out, programmed to come through the outline?  One that
- * lies along the outline does not.  On the second plane the outline may have
- * moved beyond the far end of a lead that does not; so the programmed plane
- * tells.
+ * Is the lead in, or out, programmed to come through the outline?  What it does
+ * nearer to the outline than the offset tells; one that lies along the outline
+ * does not come through it.  On the second plane the outline may have moved
+ * beyond the far end of a lead that does not; so the programmed plane tells.
  */
 static bool goes_through(const struct contour *k, const struct stretch *s,
 			 bool out)
@@ -164,15 +192,29 @@ static bool goes_through(const struct contour *k, const struct stretch *s,
 	const struct contour_motion *lead = &k->m[out ? s->end - 1 : s->first];
 	const struct contour_motion *m = out ? lead - 1 : lead + 1;
 	const struct curve *c = &m->c[0];
-	const struct vec far = out ? lead->c[0].to : lead->c[0].from;
+	const struct curve to = out ? curve_reversed(&lead->c[0]) : lead->c[0];
+	const double share = fabs(m->offset_mm) / curve_length(&to);
+	const struct vec near = curve_at(&to, 1 - share);
 	const struct vec end = out ? c->to : c->from;
 	struct vec way;
 
 	if (curve_length(c) < CURVE_SAME_MM)
 		return true;
 	way = curve_way(c, out);
-	return ((far.y - end.y) * way.x - (far.x - end.x) * way.y) *
+	return ((near.y - end.y) * way.x - (near.x - end.x) * way.y) *
 	       m->offset_mm < 0;
+}
+
+/* Motion @i as a lead that goes to, or comes from, @far on plane @p. */
+static struct track_lead lead_of(const struct contour *k, uint32_t i, int p,
+				 struct vec far)
+{
+	const struct contour_motion *m = &k->m[i];
+
+	return (struct track_lead) {
+		.there = true, .owner = i, .c = m->c[p], .far = far,
+		.round = m->c[0].arc || m->c[1].arc,
+	};
 }
 
 static int make_track(struct contour *k, struct stretch *s, int p,
@@ -197,14 +239,14 @@ static int make_track(struct contour *k, struct stretch *s, int p,
 	if (err == -EINVAL)
 		contour_refuse_faces(k, &bad, diag);
 	job.face = &f;
-	if (s->in)
-		job.lead[0] = (struct track_lead) {
-			true, s->first, k->at[p], k->m[s->first].c[p].arc,
-			goes_through(k, s, false) };
-	if (s->out)
-		job.lead[1] = (struct track_lead) {
-			true, b, lead_end(k, b, next, p), k->m[b].c[p].arc,
-			goes_through(k, s, true) };
+	if (s->in) {
+		job.lead[0] = lead_of(k, s->first, p, k->at[p]);
+		job.lead[0].through = goes_through(k, s, false);
+	}
+	if (s->out) {
+		job.lead[1] = lead_of(k, b, p, lead_end(k, b, next, p));
+		job.lead[1].through = goes_through(k, s, true);
+	}
 	if (!err) {
 		err = track_make(&s->t[p], &job, &fault);
 		if (err == -EINVAL)
@@ -255,15 +297,17 @@ static int cut_owner(struct contour *k, struct stretch *s, uint32_t i,
 {
 	const struct contour_motion *b = i + 1 < k->n ? &k->m[i + 1] : next;
 	const bool corner = is_corner(k, &k->m[i], b);
-	struct curve c[2];
-	const struct step step = { k, &k->m[i], c, diag };
-	int err = 0;
+	struct curve c[LEAD_PARTS][2];
+	const struct step step = { k, &k->m[i], c[0], { 0, 1 }, diag };
+	uint32_t n = 0;
+	int err;
 
-	if (take_curves(k, s, i, false, c))
-		err = cut_motion(&step, corner);
+	while (n < LEAD_PARTS && take_curves(k, s, i, false, c[n]))
+		n++;
+	err = cut_curves(&step, c, n, corner);
 	if (!err)
 		err = do_corner(&step, corner);
-	while (!err && take_curves(k, s, i, true, c))
+	while (!err && take_curves(k, s, i, true, c[0]))
 		err = cut_part(&step, 0, 1, &step.m->word);
 	return err;
 }
@@ -289,17 +333,32 @@ static int cut_lead(struct contour *k, uint32_t i,
 		    const struct contour_motion *next,
 		    struct interp_diag *diag)
 {
-	struct curve c[2];
-	const struct step step = { k, &k->m[i], c, diag };
+	const bool out = !is_on(&k->m[i]);
+	struct curve c[LEAD_PARTS][2];
+	const struct step step = { k, &k->m[i], c[0], { 0, 1 }, diag };
+	uint32_t n = 0;
 	int err;
 
 	for (int p = 0; p < 2; p++) {
 		const struct vec end = lead_end(k, i, next, p);
+		const struct vec at = out ? k->at[p] : end;
+		const struct track_lead l = lead_of(k, i, p,
+						    out ? end : k->at[p]);
+		const struct vec was = out ? l.c.from : l.c.to;
+		struct curve way[LEAD_PARTS];
 
-		c[p] = curve_line(k->at[p], end);
+		if (!lead_lay(&l, at, out, way))
+			return contour_refuse_track(k, &(struct track_fault) {
+				.kind = TRACK_ROUND, .a = i, .b = out ? i - 1 :
+				i, .found_mm = l.c.r,
+				.wanted_mm = curve_distance(was, at),
+			}, p, diag);
+		n = lead_size(&l);
+		for (uint32_t j = 0; j < n; j++)
+			c[j][p] = way[j];
 		k->at[p] = end;
 	}
-	err = cut_motion(&step, false);
+	err = cut_curves(&step, c, n, false);
 	return err ? err : do_corner(&step, false);
 }
 

@@ -194,55 +194,60 @@ static int lay_corner(struct track_work *w, uint32_t i, struct track_elem *b)
 
 /* -- Leads ---------------------------------------------------------------- */
 
-/* From @from to @at, which it reaches the way @way goes. */
-static struct curve tangent_arc(struct vec from, struct vec at, struct vec way)
+bool track_put_lead(struct track_work *w, int i, struct vec at)
 {
-	const struct vec d = { from.x - at.x, from.y - at.y };
-	const double across = d.y * way.x - d.x * way.y;
-	const double r = (d.x * d.x + d.y * d.y) / (2 * across);
+	struct track_elem *e = &w->elem[track_lead_first(w, i)];
+	struct curve c[LEAD_PARTS];
 
-	if (fabs(across) < 1e-9 * curve_hypot(d.x, d.y))
-		return curve_line(from, at);
-	return curve_arc(from, at, vec_add(at, r, (struct vec) {
-			 -way.y, way.x }), r < 0);
+	if (!lead_lay(&w->job->lead[i], at, i, c))
+		return false;
+	for (uint32_t k = 0; k < lead_size(&w->job->lead[i]); k++) {
+		e[k].c = c[k];
+		e[k].dead = false;
+	}
+	return true;
 }
 
-/* A lead to share 0 of @next (in), or from share 1 of @next (out). */
-static struct curve lead_curve(const struct track_lead *l,
-			       const struct curve *next, bool out)
-{
-	const struct curve back = curve_reversed(next);
-	const struct curve *to = out ? &back : next;
-	struct curve c = curve_line(l->far, to->from);
-
-	if (l->arc)
-		c = tangent_arc(l->far, to->from, curve_way(to, false));
-	return out ? curve_reversed(&c) : c;
-}
-
-static int lay_lead(struct track_work *w, int i, uint32_t next)
+/* One that cannot go to its end of the track is dead: no way goes along it. */
+static void lay_lead(struct track_work *w, int i)
 {
 	const struct track_lead *l = &w->job->lead[i];
-	const struct curve c = lead_curve(l, &w->elem[next].c, i);
-	struct track_elem *e = track_add(w);
+	const uint32_t first = track_lead_first(w, i), n = lead_size(l);
+	const struct vec at = i ? w->elem[first - 1].c.to :
+				  w->elem[n].c.from;
 
-	if (!e)
-		return -ENOMEM;
-	e->owner = l->owner;
-	e->c = c;
+	for (uint32_t k = first; k < first + n; k++)
+		w->elem[k] = (struct track_elem) {
+			.c = curve_line(l->far, at), .owner = l->owner,
+			.piece = -1, .dead = true,
+		};
+	track_put_lead(w, i, at);
+}
+
+void track_lay_leads(struct track_work *w)
+{
+	for (int i = 0; i < 2; i++) {
+		if (w->job->lead[i].there)
+			lay_lead(w, i);
+	}
+}
+
+static int add_lead(struct track_work *w, int i)
+{
+	for (uint32_t k = lead_size(&w->job->lead[i]); k; k--) {
+		if (!track_add(w))
+			return -ENOMEM;
+	}
 	return 0;
 }
 
 int track_lay(struct track_work *w)
 {
-	const struct track_job *j = w->job;
-	const uint32_t in = j->lead[0].there;
-	int err = 0;
+	int err;
 
 	w->n = 0;
-	if (in && !track_add(w))
-		return -ENOMEM;
-	for (uint32_t i = 0; !err && i < j->face->n; i++) {
+	err = add_lead(w, 0);
+	for (uint32_t i = 0; !err && i < w->job->face->n; i++) {
 		struct track_elem e;
 
 		err = lay_piece(w, i);
@@ -256,12 +261,10 @@ int track_lay(struct track_work *w)
 		else if (!err)
 			err = -ENOMEM;
 	}
-	if (!err && in) {
-		w->elem[0].owner = j->lead[0].owner;
-		w->elem[0].c = lead_curve(&j->lead[0], &w->elem[1].c, false);
-	}
-	if (!err && j->lead[1].there)
-		err = lay_lead(w, 1, w->n - 1);
+	if (!err)
+		err = add_lead(w, 1);
+	if (!err)
+		track_lay_leads(w);
 	return err;
 }
 

@@ -3,6 +3,7 @@
  * track.h - the way of the wire's axis along an outline
  *
  *	track.c		the parallels of all pieces, joined at their corners
+ *	lead.c		the leads in front of them and behind them
  *	clear.c		how near to the outline a part of it comes
  *	lost.c		what it may leave out
  *	way.c		the way along it that is nowhere too near
@@ -26,8 +27,10 @@
 struct track_lead {
 	bool there;
 	uint32_t owner;
-	struct vec far;			/* its end off the outline */
-	bool arc;			/* it touches the track in a tangent */
+	struct curve c;			/* as it is written */
+	struct vec far;			/* where the wire is at its end off the
+					 * outline */
+	bool round;			/* an arc, on this plane or the other */
 	bool through;			/* it comes through the outline */
 };
 
@@ -67,6 +70,9 @@ enum track_fault_kind {
 					 * are left; this is reported, and is no
 					 * fault */
 	TRACK_LEAD,			/* lead a comes too near to b */
+	TRACK_ROUND,			/* lead a is an arc of radius found_mm;
+					 * beside b the wire is wanted_mm off
+					 * its end, and beyond its centre */
 	TRACK_CROWDED,			/* more crossings than are looked at */
 };
 
@@ -128,6 +134,43 @@ struct track_work {
 	const struct face_side *sides;	/* NULL, or the pieces themselves are
 					 * moved: face_move.h */
 };
+
+#define LEAD_PARTS	3u
+
+/** lead_size() - how many curves a lead is made of: 0, 1 or LEAD_PARTS. */
+uint32_t lead_size(const struct track_lead *l);
+
+/**
+ * lead_lay() - the way of the wire from the far end of a lead to @at on the
+ * track, or, @out, from @at to the far end.
+ * A straight lead goes straight.  An arc goes about the centre that is written
+ * at the radius of @at, with a straight step at the far end.
+ * Return: false if the wire cannot go so: @at is beyond the centre, or nothing
+ * is left of the arc.
+ */
+bool lead_lay(const struct track_lead *l, struct vec at, bool out,
+	      struct curve ret[LEAD_PARTS]);
+
+/** track_lead_of() - 0: element @e leads in, 1: out, -1: it is no lead. */
+static inline int track_lead_of(const struct track_work *w, uint32_t e)
+{
+	if (e < lead_size(&w->job->lead[0]))
+		return 0;
+	return w->elem[e].piece < 0 ? 1 : -1;
+}
+
+/** track_lead_first() - the first element of the lead in (0) or out (1). */
+static inline uint32_t track_lead_first(const struct track_work *w, int i)
+{
+	return i ? w->n - lead_size(&w->job->lead[1]) : 0;
+}
+
+/** track_lay_leads() - to the ends of the raw track. */
+void track_lay_leads(struct track_work *w);
+
+/** track_put_lead() - let lead @i (0: in) end, or begin, at @at.
+ *  Return: false, and the lead is as it was, if it cannot. */
+bool track_put_lead(struct track_work *w, int i, struct vec at);
 
 /** track_add() - one more element, not filled. Return: NULL: no memory. */
 struct track_elem *track_add(struct track_work *w);

@@ -35,12 +35,30 @@ static void tell(struct walker *k, enum track_fault_kind kind,
 		k->fault->found_mm = curve_gap(&p->c, &q->c);
 }
 
+/* Lead @i has an arc that the wire cannot go round. */
+static void tell_round(struct walker *k, int i)
+{
+	const struct track_lead *l = &k->w->job->lead[i];
+	const uint32_t e = track_lead_first(k->w, i);
+
+	*k->fault = (struct track_fault) {
+		.kind = TRACK_ROUND, .a = l->owner,
+		.b = track_piece(k->w, e)->owner, .found_mm = l->c.r,
+		.wanted_mm = curve_distance(i ? l->c.from : l->c.to,
+					    k->w->elem[e].c.to),
+	};
+}
+
 /* Element @i, a lead, comes too near to the blocker. */
 static void tell_lead(struct walker *k, uint32_t i)
 {
 	const struct track_elem *e = &k->w->elem[i];
 	const struct face_piece *q = &k->w->job->face->piece[k->w->blocker];
 
+	if (e->dead) {
+		tell_round(k, track_lead_of(k->w, i));
+		return;
+	}
 	*k->fault = (struct track_fault) {
 		.kind = TRACK_LEAD, .a = e->owner, .b = q->owner,
 		.found_mm = curve_gap(&e->c, &q->c), .wanted_mm = q->wire_mm,
@@ -60,6 +78,27 @@ static void tell_stuck(struct walker *k)
 		tell(k, TRACK_STUCK, track_piece(k->w, k->elem), q);
 }
 
+static bool is_clear(struct track_work *w, uint32_t e, double t0, double t1)
+{
+	if (!w->elem[e].dead && (t1 - t0) * curve_length(&w->elem[e].c) <
+				w->same_mm)
+		return true;
+	return clear_is(w, e, t0, t1);
+}
+
+/* Is lead @i clear?  If not, element @e of it is not. */
+static bool is_lead_clear(struct track_work *w, int i, uint32_t *e)
+{
+	const uint32_t first = track_lead_first(w, i);
+	const uint32_t end = first + lead_size(&w->job->lead[i]);
+
+	for (*e = first; *e < end; (*e)++) {
+		if (!is_clear(w, *e, 0, 1))
+			return false;
+	}
+	return true;
+}
+
 /* -- Is something lost? --------------------------------------------------- */
 
 /* The walls: behind a corner that the wire goes round is the first of them. */
@@ -69,16 +108,17 @@ static int check_jump(struct walker *k, struct track_jump *j)
 	const struct face_piece *p = track_piece(k->w, j->e);
 	const struct face_piece *q = track_piece(k->w, j->f);
 
-	if (!lost_is(k->w, j))
-		return 0;
 	for (int i = 0; i < 2; i++) {
-		const uint32_t e = i ? j->f : j->e;
+		const int lead = track_lead_of(k->w, i ? j->f : j->e);
+		uint32_t e;
 
-		if (k->w->elem[e].piece >= 0 || clear_is(k->w, e, 0, 1))
+		if (lead < 0 || is_lead_clear(k->w, lead, &e))
 			continue;
 		tell_lead(k, e);
 		return -EINVAL;
 	}
+	if (!lost_is(k->w, j))
+		return 0;
 	if (k->w->elem[j->e].round && p + 1 < f->piece + f->n && p + 1 != q)
 		p++;
 	tell(k, TRACK_LOST, p, q);
@@ -164,14 +204,6 @@ static double next_place(const struct track_work *w, uint32_t e, double t)
 	const uint32_t i = hit_behind(w, e, t);
 
 	return i < hits_end(w, e) ? w->hit[i].t : 1;
-}
-
-static bool is_clear(struct track_work *w, uint32_t e, double t0, double t1)
-{
-	if (!w->elem[e].dead && (t1 - t0) * curve_length(&w->elem[e].c) <
-				w->same_mm)
-		return true;
-	return clear_is(w, e, t0, t1);
 }
 
 static int add_run(struct track_work *w, uint32_t e, double t, bool jump)
@@ -300,27 +332,14 @@ static int walk(struct walker *k)
 
 /* -- A contour begun in an inner corner ----------------------------------- */
 
-/* The lead, from its far end to @at. */
-static struct curve lead_to(const struct track_work *w, int i, struct vec at)
+/* Let both leads end at @at, if they are clear then. */
+static bool lead_to(struct track_work *w, struct vec at)
 {
-	const struct vec far = w->job->lead[i].far;
+	uint32_t e;
 
-	return i ? curve_line(at, far) : curve_line(far, at);
-}
-
-static bool leads_are_clear(struct track_work *w, struct vec at)
-{
 	for (int i = 0; i < 2; i++) {
-		struct track_elem *e = &w->elem[i ? w->n - 1 : 0];
-		const struct curve was = e->c;
-		bool clear;
-
-		if (!w->job->lead[i].there)
-			continue;
-		e->c = lead_to(w, i, at);
-		clear = is_clear(w, i ? w->n - 1 : 0, 0, 1);
-		e->c = was;
-		if (!clear)
+		if (!track_put_lead(w, i, at) ||
+		    !is_lead_clear(w, i, &e))
 			return false;
 	}
 	return true;
@@ -346,14 +365,14 @@ static bool may_begin(struct walker *k, const struct track_hit *h)
 		}
 	}
 	return is_clear(w, h->other, before, h->t_other) &&
-	       leads_are_clear(w, h->at);
+	       lead_to(w, h->at);
 }
 
 /* Begin where the first part that is far enough crosses the last one. */
 static int find_start(struct walker *k)
 {
 	struct track_work *w = k->w;
-	const uint32_t in = w->job->lead[0].there;
+	const uint32_t in = lead_size(&w->job->lead[0]);
 	int err = 0;
 
 	for (uint32_t i = w->elem[in].hit;
@@ -375,20 +394,16 @@ static int find_start(struct walker *k)
 		k->t = h->t;
 		k->stop_elem = h->other;
 		k->stop_t = h->t_other;
-		for (int s = 0; s < 2; s++) {
-			if (w->job->lead[s].there)
-				w->elem[s ? w->n - 1 : 0].c =
-					lead_to(w, s, h->at);
-		}
 		return 0;
 	}
+	track_lay_leads(w);
 	return err;
 }
 
 /* Is the beginning of a closed outline out of reach? */
 static bool begins_inside(struct track_work *w)
 {
-	const uint32_t in = w->job->lead[0].there;
+	const uint32_t in = lead_size(&w->job->lead[0]);
 	const struct face *f = w->job->face;
 
 	return f->closed && w->job->side && !f->piece[0].lead &&
@@ -396,24 +411,26 @@ static bool begins_inside(struct track_work *w)
 	       !is_clear(w, in, 0, next_place(w, in, 0));
 }
 
-static int walk_inside(struct walker *k)
+static int add_lead(struct track_work *w, int i)
 {
-	struct track_work *w = k->w;
+	const uint32_t first = track_lead_first(w, i);
 	int err = 0;
 
-	if (w->job->lead[0].there) {
-		err = add_run(w, 0, 0, false);
-		if (!err)
-			w->run[0].t[1] = 1;
-	}
-	if (!err)
-		err = walk(k);
-	if (!err && w->job->lead[1].there) {
-		err = add_run(w, w->n - 1, 0, false);
+	for (uint32_t k = 0; !err && k < lead_size(&w->job->lead[i]); k++) {
+		err = add_run(w, first + k, 0, false);
 		if (!err)
 			w->run[w->nruns - 1].t[1] = 1;
 	}
 	return err;
+}
+
+static int walk_inside(struct walker *k)
+{
+	int err = add_lead(k->w, 0);
+
+	if (!err)
+		err = walk(k);
+	return err ? err : add_lead(k->w, 1);
 }
 
 int way_find(struct track_work *w, struct track_fault *fault)
