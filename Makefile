@@ -16,6 +16,7 @@
 #                   jumps, try the contour compensations, compare servo
 #                   values, into docs/experiments-*.md
 #   make wire-random  ten thousand contours of a wire against another geometry
+#   make speed-oracle  does each axis keep its limits along 480 random programs
 #   make shipped    each shipped machine file and its jobs, for 100 seeds
 #   make walkable   random programs of every dialect are walked, there and back
 #   make invariants what holds in every cycle, over ten million random ones
@@ -557,6 +558,15 @@ wire-random: $(B)/edmsim
 	$(Q)$(call WIRE_TEST,100)/test_wire_taper.py -k "tapers or taper"
 	$(Q)$(call WIRE_TEST,20)/test_wire_faces.py -k faces
 	$(Q)$(call WIRE_TEST,100)/test_wire_arcs.py
+
+# Random programs of six classes, each walked: what is asked of each axis, within the
+# rounding, by a linear program that knows nothing of how speeds were found.
+SPEED_RUNS ?= 80
+.PHONY: speed-oracle
+speed-oracle: $(B)/edmsim
+	@tests/setup check
+	$(Q)EDM_BUILD=$(B) $(if $(SEED),EDM_SEED=$(SEED)) EDM_RUNS=$(SPEED_RUNS) \
+		.venv/bin/pytest -q -rP -n $(SIDE) tests/sim/test_speed_oracle.py
 
 # Each machine file that is shipped, and its jobs, for so many seeds: 20 min.
 SHIPPED ?= 100

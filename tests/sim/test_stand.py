@@ -5,7 +5,8 @@ them where that is quicker, and nowhere else."""
 import math
 import random
 
-from test_dense import dry_s, limits, machine
+from speed_programs import axis_limits, machine
+from test_dense import dry_s
 
 POLYGONS = 20
 
@@ -40,7 +41,8 @@ def test_sides_that_turn_c_take_no_longer_than_with_stands(tmp_path):
     shares = {}
     for seed in range(POLYGONS):
         rng = random.Random(seed)
-        of = machine(tmp_path, {**{axis: limits(rng, axis) for axis in "XYZ"},
+        of = machine(tmp_path, {**{axis: axis_limits(rng, axis)
+                                  for axis in "XYZ"},
                                 "C": (60, rng.uniform(50, 500), 50000)})
         lines = polygon(rng, True)
         shares[seed] = (dry_s(of, text(lines)) /
