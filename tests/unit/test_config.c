@@ -221,23 +221,19 @@ static void the_cycle_gets_seconds_as_cycles_of_its_period(void **state)
 	assert_false(cycle.dry_run);
 }
 
-static void positioning_is_as_weak_as_the_weakest_linear_axis(void **state)
+static void positioning_has_no_limit_but_that_of_its_axes(void **state)
 {
 	struct machine_config c;
 	struct cycle_config cycle;
 
 	(void)state;
-	read_good("[axis.X]\na_max_mm_s2 = 900\nj_max_mm_s3 = 700\n"
-		  "[axis.B]\na_max_mm_s2 = 5\nj_max_mm_s3 = 3\n"
-		  "[axis.U]\na_max_mm_s2 = 7\npresent = no\n", &c);
+	read_good("[axis.X]\na_max_mm_s2 = 300\nj_max_mm_s3 = 3000\n"
+		  "[axis.Y]\na_max_mm_s2 = 400\nj_max_mm_s3 = 4000\n"
+		  "[axis.U]\na_max_mm_s2 = 7000\npresent = no\n", &c);
+	c.axes.present = 1u << INTERP_X | 1u << INTERP_Y;
 	config_cycle(&c, &cycle);
-	assert_true(cycle.travel_a_mm_s2 == 900);
-	assert_true(cycle.travel_j_mm_s3 == 700);
-
-	c.axes.present = 1u << INTERP_B;
-	config_cycle(&c, &cycle);
-	assert_true(cycle.travel_a_mm_s2 == 5);
-	assert_true(cycle.travel_j_mm_s3 == 3);
+	assert_true(cycle.travel_a_mm_s2 == 500);
+	assert_true(cycle.travel_j_mm_s3 == 5000);
 }
 
 /* 0 in the file is what the machine has of its own. */
@@ -325,7 +321,7 @@ int main(void)
 		cmocka_unit_test(the_document_names_every_key_once),
 		cmocka_unit_test(soft_limits_are_rounded_inward),
 		cmocka_unit_test(the_cycle_gets_seconds_as_cycles_of_its_period),
-		cmocka_unit_test(positioning_is_as_weak_as_the_weakest_linear_axis),
+		cmocka_unit_test(positioning_has_no_limit_but_that_of_its_axes),
 		cmocka_unit_test(the_servo_takes_from_the_machine_what_is_not_given),
 		cmocka_unit_test(what_is_believed_of_an_axis_is_off_by_the_model_error),
 	};

@@ -133,6 +133,8 @@ static void round_arc(const struct interp_program *p,
 		return;
 	tangent(p, arc, 0, length_mm, &h->first);
 	tangent(p, arc, arc->sweep, length_mm, &h->last);
+	h->round |= 1u << heading_column(p, arc->axis_a) |
+		    1u << heading_column(p, arc->axis_b);
 	bend(h, arc, length_mm);
 }
 
@@ -161,6 +163,7 @@ void heading_of(const struct ways *w, uint32_t i, struct headings *ret)
 
 	ret->bend_mm = 0;
 	ret->share = 1;
+	ret->round = 0;
 	if (s->kind == INTERP_ARC)
 		moving |= columns_of(p, 1u << p->arcs[s->arg].axis_a |
 					1u << p->arcs[s->arg].axis_b);

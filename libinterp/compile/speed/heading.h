@@ -37,6 +37,7 @@ struct headings {
 					 * straight */
 	double share;			/* share of the path's speed in that
 					 * bend */
+	uint32_t round;			/* columns that go round arcs */
 };
 
 /* A program, and what is the same for all of its segments. */
@@ -95,6 +96,7 @@ COLUMNS_INLINE void heading_find(const struct ways *w, uint32_t i,
 	ret->first.along = ret->last.along = w->xyz;
 	ret->bend_mm = 0;
 	ret->share = 1;
+	ret->round = 0;
 	for (uint32_t j = 0; j < n; j++)
 		ret->last.rate[j] = ret->first.rate[j];
 }

@@ -262,32 +262,27 @@ COLUMNS_INLINE void soften_line(struct pass *w, struct interp_seg *s,
 }
 
 /*
- * The ceiling of an arc, @v_mm_s at most, by the axes that move; and what it
- * leaves at that speed, as a share of what those do that bend.  Along and
- * across are square to each other.
+ * The ceiling of an arc, @v_mm_s at most, by the axes that go round it; and
+ * what it leaves at that speed, as a share of what those can do.  Along and
+ * across are square to each other.  An axis that goes evenly beside them has
+ * all of its own for going along.
  */
 static double round_bend(const struct pass *w, const struct headings *h,
 			 uint32_t bends, double v_mm_s, struct along *ret)
 {
-	const double r = h->bend_mm;
-	const double own = pass_weakest(w, bends).a_mm_s2;
-	double a = INFINITY, j = INFINITY, v, across, both, speed_up;
+	const struct weakest own = pass_weakest(w, bends);
+	const double r = h->bend_mm, a = own.a_mm_s2, j = own.j_mm_s3;
+	double v, across, both, speed_up;
 
-	for (uint32_t k = 0; k < w->n; k++) {
-		if (h->first.rate[k] == 0 && h->last.rate[k] == 0)
-			continue;
-		a = smaller(a, w->a_mm_s2[k]);
-		j = smaller(j, w->j_mm_s3[k]);
-	}
 	v = smaller(v_mm_s * h->share,
 		    pass_round_mm_s(r, INTERP_BEND_ACROSS * a,
 				    INTERP_ARC_JERK_ROUND * j));
 	across = v * v / (r * a);
-	speed_up = smaller(sqrt(1 - across * across) * own,
+	speed_up = smaller(sqrt(1 - across * across) * a,
 			   INTERP_ARC_JERK_BOTH * j * r / (3 * v));
 	both = 3 * v * speed_up / (r * j);
 	*ret = (struct along) {
-		speed_up / own, sqrt(1 - both * both) - v * v * v / (r * r * j),
+		speed_up / a, sqrt(1 - both * both) - v * v * v / (r * r * j),
 		INFINITY, INFINITY
 	};
 	return v / h->share;
@@ -344,7 +339,7 @@ COLUMNS_INLINE double limit_long(struct pass *w, uint32_t i,
 	struct interp_seg *s = &w->segs[i];
 	struct rates rates;
 
-	near_other_rates(s, h, &rates, n);
+	near_other_rates(h, &rates, n);
 	soften_line(w, s, &rates, n);
 	return (double)s->feed_max_mm_s;
 }

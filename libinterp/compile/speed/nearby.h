@@ -160,24 +160,19 @@ COLUMNS_INLINE void near_rates(struct pass *w, uint32_t i,
 }
 
 /* The rates of what is no short line. */
-COLUMNS_INLINE void near_other_rates(const struct interp_seg *s,
-				     const struct headings *h,
+COLUMNS_INLINE void near_other_rates(const struct headings *h,
 				     struct rates *ret, uint32_t n)
 {
 	ret->v_mm_s = 0;
 	ret->top_mm_s = INFINITY;
-	ret->bends = 0;
+	ret->bends = h->round;
 	for (uint32_t j = 0; j < n; j++) {
 		const double ends = larger(fabs(h->first.rate[j]),
 					   fabs(h->last.rate[j]));
-		/* U V go round a bend of their own. */
-		const bool bends = s->kind != INTERP_LINE && ends > 0 &&
-				   (s->kind == INTERP_PAIR ||
-				    (h->first.along | h->last.along) >> j & 1);
 
 		/* On its way it may go in the direction of the axis alone. */
-		ret->by[j] = bends ? larger(ends, larger(h->share, 1)) : ends;
-		ret->bends |= (uint32_t)bends << j;
+		ret->by[j] = h->round >> j & 1 ?
+			     larger(ends, larger(h->share, 1)) : ends;
 	}
 }
 

@@ -645,5 +645,5 @@ void pass_rates(struct pass *w, uint32_t i, const struct headings *h,
 		BY_WAYS(w->n, h->first.along, near_rates, w, i, &h->first,
 			ret);
 	else
-		BY_COLUMNS(w->n, near_other_rates, s, h, ret);
+		BY_COLUMNS(w->n, near_other_rates, h, ret);
 }

@@ -52,8 +52,8 @@ static inline bool interp_axis_is_rotary(enum interp_axis a)
 }
 
 /**
- * interp_machine_travel() - what any positioning has at most: as the weakest
- * linear axis that is there; of rotary axes, if there are no others.
+ * interp_machine_travel() - more than any positioning has: all axes together.
+ * Each segment says what the axes allow that move on it.
  */
 void interp_machine_travel(const struct interp_machine *m, double *ret_a_mm_s2,
 			   double *ret_j_mm_s3);
