@@ -2,15 +2,43 @@
 /* heard.c - which machines send their STATUS now */
 #include "heard.h"
 
+#include "local.h"
+#include "places.h"
 #include "talk.h"
 #include "udpm.h"
 
 #include <errno.h>
 #include <poll.h>
+#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #define HEAD	"EDM."
 #define TAIL	".STATUS"
+
+static void add(void *arg, const char *name)
+{
+	struct heard *h = arg;
+
+	for (int i = 0; i < h->n; i++)
+		if (strcmp(h->name[i], name) == 0)
+			return;
+	if (h->n < (int)(sizeof(h->name) / sizeof(h->name[0])))
+		snprintf(h->name[h->n++], sizeof(h->name[0]), "%s", name);
+}
+
+/* One that is left from a service that was killed has nobody behind it. */
+static void add_here(void *arg, const char *name)
+{
+	struct sockaddr_un at;
+	const int fd = places_address(&at, name, "jobs") < 0 ? -1 :
+		       local_connect(&at);
+
+	if (fd < 0)
+		return;
+	close(fd);
+	add(arg, name);
+}
 
 static void take(struct heard *h, const char *channel)
 {
@@ -23,13 +51,8 @@ static void take(struct heard *h, const char *channel)
 		return;
 	memcpy(name, channel + strlen(HEAD), n - around);
 	name[n - around] = '\0';
-	if (!keyfile_name_fits(name))
-		return;
-	for (int i = 0; i < h->n; i++)
-		if (strcmp(h->name[i], name) == 0)
-			return;
-	if (h->n < (int)(sizeof(h->name) / sizeof(h->name[0])))
-		memcpy(h->name[h->n++], name, sizeof(name));
+	if (keyfile_name_fits(name))
+		add(h, name);
 }
 
 int heard_listen(struct heard *ret, const char *url, int ms)
@@ -40,11 +63,14 @@ int heard_listen(struct heard *ret, const char *url, int ms)
 	struct pollfd p = { .events = POLLIN };
 	struct udpm *in;
 	double left_s;
-	int err = udpm_url_read(&at, url) ? -EINVAL : udpm_open(&in, &at);
+	int err = udpm_url_read(&at, url ? url : TALK_URL) ? -EINVAL :
+		  udpm_open(&in, &at);
 
 	*ret = (struct heard) { .n = 0 };
+	if (!url)
+		places_each("jobs", add_here, ret);
 	if (err < 0)
-		return err;
+		return ret->n ? 0 : err;
 	p.fd = udpm_fd(in);
 	while ((left_s = until_s - talk_now_s()) > 0 && !talk_interrupted())
 		if (poll(&p, 1, (int)(left_s * 1e3) + 1) > 0 &&

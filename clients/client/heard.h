@@ -20,6 +20,7 @@ struct heard {
 
 /**
  * heard_listen() - listen at @url for @ms; a service sends ten STATUS a second.
+ * NULL: at TALK_URL, and look for the sockets of this host.
  * Return: 0; -EINVAL: no such URL; -errno.
  */
 int heard_listen(struct heard *ret, const char *url, int ms);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * talk.c - speaks with edmd-jobs over LCM
+ * talk.c - speaks with edmd-jobs by LCM's messages
  *
  * The client learns the service's boot number and clock from an ack that has
  * the client's own name.  The name was drawn a moment ago, so nobody can have
@@ -17,10 +17,9 @@
 #include "packet.h"
 #include "seal.h"
 #include "standard.h"
-#include "udpm.h"
+#include "talk_way.h"
 
 #include <errno.h>
-#include <lcm/lcm.h>
 #include <poll.h>
 #include <signal.h>
 #include <sodium.h>
@@ -55,9 +54,7 @@ struct listener {
 };
 
 struct talk {
-	lcm_t *lcm;			/* used only for sending; it does not
-					 * listen */
-	struct udpm *in;
+	struct talk_way *way;
 	struct keyfile key;
 	char machine[32];
 	char client[TALK_WORD_MAX];
@@ -148,7 +145,7 @@ static void sign_and_send(struct talk *t, const char *name, struct seal s,
 	if (packet)
 		n = seal_make(packet, &s, channel, t->key.secret);
 	if (n)
-		lcm_publish(t->lcm, channel, packet, (unsigned int)n);
+		talk_way_send(t->way, channel, packet, n);
 	free(packet);
 	free(data);
 }
@@ -408,33 +405,6 @@ static int key_take(struct talk *t, const char *path, char *said)
 	return -EINVAL;
 }
 
-static int join(struct talk *t, const struct talk_options *o, char *said)
-{
-	const char *url = o->url ? o->url : TALK_URL, *wrong;
-	char why[UDPM_WHY_MAX];
-	struct udpm_url at;
-	int err;
-
-	snprintf(t->client, sizeof(t->client), "%.20s-%d-%08x%08x",
-		 o->program ? o->program : "client", (int)getpid(),
-		 randombytes_random(), randombytes_random());
-	wrong = udpm_url_read(&at, url);
-	if (wrong) {
-		snprintf(said, TALK_SAID_MAX, "URL %s: %s", url, wrong);
-		return -EDESTADDRREQ;
-	}
-	/* LCM's library prints pages where there is no way.  Our own socket
-	 * meets that first. */
-	err = udpm_open(&t->in, &at);
-	if (err == 0)
-		t->lcm = lcm_create(url);
-	if (t->lcm)
-		return 0;
-	udpm_why(&at, err, why, sizeof(why));
-	snprintf(said, TALK_SAID_MAX, "cannot open %s: %s", url, why);
-	return -ENETUNREACH;
-}
-
 int talk_open(struct talk **ret, const struct talk_options *o,
 	      char said[TALK_SAID_MAX])
 {
@@ -445,7 +415,10 @@ int talk_open(struct talk **ret, const struct talk_options *o,
 	if (err == 0) {
 		snprintf(t->machine, sizeof(t->machine), "%s",
 			 o->machine ? o->machine : "edm");
-		err = join(t, o, said);
+		snprintf(t->client, sizeof(t->client), "%.20s-%d-%08x%08x",
+			 o->program ? o->program : "client", (int)getpid(),
+			 randombytes_random(), randombytes_random());
+		err = talk_way_open(&t->way, t->machine, o->url, said);
 	}
 	/* Where there is no network, no service has made a key yet. */
 	if (err == 0)
@@ -468,9 +441,7 @@ void talk_close(struct talk *t)
 		t->question[i].fn = NULL;
 		question_end(&t->question[i], -ECANCELED, NULL);
 	}
-	if (t->lcm)
-		lcm_destroy(t->lcm);
-	udpm_close(t->in);
+	talk_way_close(t->way);
 	sodium_memzero(&t->key, sizeof(t->key));
 	free(t);
 }
@@ -508,7 +479,7 @@ static void questions_turn(struct talk *t)
 
 int talk_fd(const struct talk *t)
 {
-	return udpm_fd(t->in);
+	return talk_way_fd(t->way);
 }
 
 void talk_step(struct talk *t)
@@ -517,8 +488,9 @@ void talk_step(struct talk *t)
 	struct udpm_packet u;
 
 	for (int i = 0; i < QUEUE_MESSAGES && poll(&p, 1, 0) > 0; i++)
-		if (udpm_take(t->in, &u))
+		if (talk_way_take(t->way, &u))
 			take(t, &u);
+	talk_way_look(t->way);
 	questions_turn(t);
 }
 

@@ -41,7 +41,8 @@ struct talk;
 
 struct talk_options {
 	const char *machine;		/* NULL: "edm" */
-	const char *url;		/* of LCM; NULL: TALK_URL */
+	const char *url;		/* of LCM; NULL: the socket of this
+					 * host; if there is none, TALK_URL */
 	const char *key;		/* key file; NULL: that of $EDM_KEY,
 					 * else the host's own */
 	const char *program;		/* our name; NULL: "client" */
@@ -104,8 +105,8 @@ struct talk_answer {
  *
  * @said: on failure, what is wrong and how to mend it, in words.
  *
- * Return: 0; -ENETUNREACH: no multicast; for the key the values of
- * keyfile_read(); else -errno.
+ * Return: 0; -ENETUNREACH: neither socket nor multicast; for the key the values
+ * of keyfile_read(); else -errno.
  */
 int talk_open(struct talk **ret, const struct talk_options *o,
 	      char said[TALK_SAID_MAX]);

@@ -56,6 +56,8 @@ int ctl_unanswered(const struct ctl *c, int err)
 	}
 	if (!c->talk && (c->talk_err != -ENOENT || key_is_named(c))) {
 		fprintf(stderr, "edmctl: %s\n", c->said);
+		if (c->talk_err == -ENETUNREACH)
+			print_heard(c);
 		return c->talk_err == -ENETUNREACH ? EX_UNAVAILABLE :
 		       c->talk_err == -EDESTADDRREQ ? EX_USAGE : EX_NOPERM;
 	}

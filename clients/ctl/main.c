@@ -15,8 +15,6 @@
 #include <string.h>
 #include <sysexits.h>
 
-#define URL_DEFAULT	TALK_URL
-
 /* If the id were cut, two jobs could become one. */
 static int take_id(void *to, const char *id)
 {
@@ -147,7 +145,8 @@ static const struct cmdline_row rows[] = {
 	{ "machine", "NAME", CMDLINE_WORD, AT(machine), .help =
 	  "name of the machine; default: $EDM_MACHINE, or edm" },
 	{ "url", "URL", CMDLINE_WORD, AT(url), .help =
-	  "URL of LCM; default: " URL_DEFAULT },
+	  "URL of LCM; default: the socket of this host; if there is\n"
+	  "none, " TALK_URL },
 	{ "key", "FILE", CMDLINE_WORD, AT(key), .help =
 	  "key to sign with; default: $EDM_KEY, or the host's key" },
 	{ "json", NULL, CMDLINE_FLAG, AT(json), .help =
@@ -351,7 +350,7 @@ static int parse(struct ctl *c, int argc, char **argv,
 int main(int argc, char **argv)
 {
 	struct ctl c = {
-		.machine = "edm", .url = URL_DEFAULT, .timeout_s = 3,
+		.machine = "edm", .timeout_s = 3,
 	};
 	const char *machine = getenv("EDM_MACHINE");
 	const struct verb *v = NULL;
@@ -367,12 +366,6 @@ int main(int argc, char **argv)
 		return v->run(&c);
 	if (sodium_init() < 0)
 		return EX_SOFTWARE;
-	if (strncmp(c.url, "udpm://", 7) != 0 &&
-	    strncmp(c.url, "memq://", 7) != 0) {
-		fprintf(stderr, "edmctl: --url %s; one of LCM, such as "
-			URL_DEFAULT "\n", c.url);
-		return EX_USAGE;
-	}
 	/* Errors in the words of the verb are reported first. */
 	c.talk_err = talk_open(&c.talk, &(struct talk_options) {
 		.machine = c.machine, .url = c.url, .key = c.key,

@@ -27,10 +27,14 @@ static void run_verb(struct support *s, struct support_text *to,
 	struct ctl *c = s->ctl;
 	char timeout[32];
 	const char *argv[14] = { "/proc/self/exe", "--machine", c->machine,
-				 "--url", c->url, "--timeout", timeout };
-	int n = 7;
+				 "--timeout", timeout };
+	int n = 5;
 
 	snprintf(timeout, sizeof(timeout), "%g", c->timeout_s);
+	if (c->url) {
+		argv[n++] = "--url";
+		argv[n++] = c->url;
+	}
 	if (c->key) {
 		argv[n++] = "--key";
 		argv[n++] = c->key;

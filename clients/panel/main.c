@@ -158,7 +158,7 @@ static int open_parts(struct panel *p)
 	p->children = children_create();
 	if (!p->sessions || !p->children || live_create(&p->live, c) < 0)
 		return fail(EX_OSERR, "out of memory", "some MB");
-	p->service = service_create(c->lcm_url, c->name);
+	p->service = service_create(c->name);
 	if (!p->service)
 		return fail(EX_OSERR, "out of memory", "some MB");
 	service_on_event(p->service, on_event, p);

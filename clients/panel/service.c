@@ -37,7 +37,7 @@ struct sending {
 };
 
 struct service {
-	const char *url, *machine;
+	const char *machine;
 	struct talk *talk;		/* NULL: not yet */
 	char why[TALK_SAID_MAX];
 	double tried_s;
@@ -61,7 +61,7 @@ static void on_event(void *arg, const struct talk_event *e)
 static void try_open(struct service *a)
 {
 	const struct talk_options o = {
-		.machine = a->machine, .url = a->url, .program = "panel",
+		.machine = a->machine, .program = "panel",
 	};
 
 	a->tried_s = talk_now_s();
@@ -73,13 +73,12 @@ static void try_open(struct service *a)
 	talk_on_event(a->talk, on_event, a);
 }
 
-struct service *service_create(const char *url, const char *machine)
+struct service *service_create(const char *machine)
 {
 	struct service *a = calloc(1, sizeof(*a));
 
 	if (!a)
 		return NULL;
-	a->url = url;
 	a->machine = machine;
 	a->status.eta_s = -1;
 	try_open(a);

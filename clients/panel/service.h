@@ -62,11 +62,11 @@ typedef void (*service_done_fn)(void *arg, const struct service_answer *a);
 typedef void (*service_event_fn)(void *arg, const char *kind, const char *text);
 
 /**
- * service_create() - @url and @machine must live as long as the object.
+ * service_create() - @machine must live as long as the object.
  *
  * Return: NULL if there is no memory.
  */
-struct service *service_create(const char *url, const char *machine);
+struct service *service_create(const char *machine);
 /**
  * service_destroy() - @a may be NULL.  The callback of a question that is still
  * open is never called.

@@ -332,7 +332,7 @@ static void run_doctor(struct browser *b, const struct verb *v, int64_t n,
 	char path[512];
 	const char *const argv[] = {
 		beside(p, "edmctl", path), "--machine", p->config.name,
-		"--url", p->config.lcm_url, "--json", "doctor", NULL
+		"--json", "doctor", NULL
 	};
 
 	(void)o;

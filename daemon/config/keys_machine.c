@@ -115,8 +115,9 @@ static const struct config_key row[] = {
 	       "Z at which an electrode of length 0 would touch it"),
 
 	STRING(LCM, "url", "udpm://239.255.76.67:7667?ttl=0", lcm_url,
-	       "address of the messages; with ttl=0 they stay on this host; "
-	       "$LCM_DEFAULT_URL is the default where it is set"),
+	       "address of the messages for other hosts and programs of LCM; "
+	       "with ttl=0 they stay on this host; $LCM_DEFAULT_URL is the "
+	       "default where it is set"),
 
 	WHOLE(DDS, "domain", "", "0", 0, 230, AT(dds_domain),
 	      "DDS domain of the fleet"),

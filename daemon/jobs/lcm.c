@@ -4,7 +4,8 @@
 
 #include "clocks.h"
 #include "jobs_log.h"
-#include "udpm.h"
+#include "local.h"
+#include "places.h"
 
 #include "edm_ack_t.h"
 #include "edm_command_t.h"
@@ -12,19 +13,25 @@
 #include "edm_job_chunk_t.h"
 #include "edm_status_t.h"
 
-#include <arpa/inet.h>
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/epoll.h>
 #include <sysexits.h>
 #include <time.h>
+#include <unistd.h>
 
 #define CHANNEL_MAX	64
+#define AGAIN_US	1000000		/* between two tries to join */
 
 struct jobs_lcm {
-	lcm_t *lcm;			/* used only for sending; it does not
-					 * listen */
-	struct udpm *in;
+	struct udpm_url url;
+	struct udpm *net;		/* NULL: there is no multicast now */
+	struct local *local;		/* NULL: there is no socket */
+	int epoll;			/* of both */
+	int wrong;			/* -errno of the last try of net */
+	int64_t tried_us;
 	char machine[32];
 	char command[CHANNEL_MAX], job[CHANNEL_MAX];
 	struct jobs_lcm_handlers handlers;
@@ -142,6 +149,8 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 	char who[KEYFILE_NAME_MAX];
 	bool is_guest;
 
+	if (w->local && n < LOCAL_CLIENT_MAX)
+		local_is(w->local, &(struct local_who) { to.key, client });
 	if (cause == TRUST_FINE && (n == 0 || n >= TRUST_CLIENT_MAX)) {
 		jobs_lcm_ack(w, &to);
 		return false;
@@ -267,33 +276,75 @@ static void channel_name(const struct jobs_lcm *w, const char *name,
 	snprintf(ret, CHANNEL_MAX, "EDM.%s.%s", w->machine, name);
 }
 
+static int watch(struct jobs_lcm *w, int fd)
+{
+	struct epoll_event e = { .events = EPOLLIN };
+
+	return epoll_ctl(w->epoll, EPOLL_CTL_ADD, fd, &e) < 0 ? -errno : 0;
+}
+
+/* What is wrong is said once, and once more when it is mended. */
+static void tell_net(struct jobs_lcm *w, int err)
+{
+	char why[UDPM_WHY_MAX];
+
+	if (err < 0 && err != w->wrong) {
+		udpm_why(&w->url, err, why, sizeof(why));
+		log_warning("lcm: no multicast, so only clients of this host "
+			    "are served: %s", why);
+	} else if (err == 0 && w->wrong) {
+		log_notice("lcm: there is multicast now");
+	}
+	w->wrong = err;
+}
+
+void jobs_lcm_look(struct jobs_lcm *w, int64_t now_us)
+{
+	int err;
+
+	if (w->net || (w->tried_us && now_us - w->tried_us < AGAIN_US))
+		return;
+	w->tried_us = now_us;
+	err = udpm_open(&w->net, &w->url);
+	if (err == 0)
+		err = watch(w, udpm_fd(w->net));
+	tell_net(w, err);
+}
+
+static void open_local(struct jobs_lcm *w)
+{
+	struct sockaddr_un at;
+	int err = places_address(&at, w->machine, "jobs");
+
+	if (err == 0)
+		err = local_open(&w->local, &at);
+	if (err == 0)
+		err = watch(w, local_fd(w->local));
+	if (err < 0)
+		log_error("lcm: no socket %s, so clients of this host need "
+			  "multicast: %s", at.sun_path, strerror(-err));
+}
+
 int jobs_lcm_open(struct jobs_lcm **ret, const struct udpm_url *url,
 	      const char *machine, const struct jobs_lcm_handlers *h)
 {
-	struct jobs_lcm *w = calloc(1, sizeof(*w));
-	char address[INET_ADDRSTRLEN], text[64];
-	int err;
+	const int epoll = epoll_create1(EPOLL_CLOEXEC);
+	struct jobs_lcm *w = epoll < 0 ? NULL : calloc(1, sizeof(*w));
 
 	if (!w)
 		return -ENOMEM;
+	w->epoll = epoll;
+	w->url = *url;
 	snprintf(w->machine, sizeof(w->machine), "%s", machine);
 	w->handlers = *h;
 	w->trust = h->trust;
 	channel_name(w, "COMMAND", w->command);
 	channel_name(w, "JOB", w->job);
-	inet_ntop(AF_INET, &url->group.sin_addr, address, sizeof(address));
-	snprintf(text, sizeof(text), "udpm://%s:%u?ttl=%u", address,
-		 ntohs(url->group.sin_port), url->ttl);
-	/* LCM's library prints pages where there is no way for multicast.  Our
-	 * own socket meets that first. */
-	err = udpm_open(&w->in, url);
-	if (err == 0) {
-		w->lcm = lcm_create(text);
-		err = w->lcm ? 0 : -ENETUNREACH;
-	}
-	if (err < 0) {
+	open_local(w);
+	jobs_lcm_look(w, clock_us(CLOCK_MONOTONIC));
+	if (!w->local && !w->net) {
 		jobs_lcm_close(w);
-		return err;
+		return -ENETUNREACH;
 	}
 	*ret = w;
 	return 0;
@@ -303,9 +354,9 @@ void jobs_lcm_close(struct jobs_lcm *w)
 {
 	if (!w)
 		return;
-	if (w->lcm)
-		lcm_destroy(w->lcm);
-	udpm_close(w->in);
+	udpm_close(w->net);
+	local_close(w->local);
+	close(w->epoll);
 	free(w);
 }
 
@@ -316,26 +367,48 @@ bool jobs_lcm_is_late(int64_t signed_us)
 
 int jobs_lcm_fd(const struct jobs_lcm *w)
 {
-	return udpm_fd(w->in);
+	return w->epoll;
 }
 
-void jobs_lcm_handle(struct jobs_lcm *w)
+static void handle_net(struct jobs_lcm *w)
 {
 	struct udpm_packet packet;
 	const char *from;
 	uint64_t strange;
 
-	if (udpm_take(w->in, &packet))
+	if (udpm_take(w->net, &packet))
 		on_packet(w, &packet);
-	strange = udpm_strange(w->in, &from);
+	strange = udpm_strange(w->net, &from);
 	for (; w->strange < strange; w->strange++)
 		trust_refuse(w->trust, TRUST_STRANGE, "nobody", from,
 			     clock_us(CLOCK_MONOTONIC));
 }
 
-/* Sign the message that LCM has encoded in @bytes, and send it. */
-static void publish(struct jobs_lcm *w, const char *name, const void *data,
-		    int bytes)
+void jobs_lcm_handle(struct jobs_lcm *w)
+{
+	struct udpm_packet packet;
+
+	if (w->local && local_take(w->local, &packet))
+		on_packet(w, &packet);
+	if (w->net)
+		handle_net(w);
+}
+
+/* Who asked by the socket is answered there; everybody hears the rest. */
+static void spread(struct jobs_lcm *w, const struct local_who *to,
+		   const char *channel, const void *packet, size_t size)
+{
+	const bool here = w->local &&
+			  local_send(w->local, to, channel, packet, size);
+
+	if (w->net && !(here && to))
+		udpm_send(w->net, channel, packet, size);
+}
+
+/* Sign the message that LCM has encoded in @bytes, and send it to @to, or to
+ * all. */
+static void publish(struct jobs_lcm *w, const struct local_who *to,
+		    const char *name, const void *data, int bytes)
 {
 	char channel[CHANNEL_MAX];
 	const struct seal s = {
@@ -351,24 +424,25 @@ static void publish(struct jobs_lcm *w, const char *name, const void *data,
 	if (packet)
 		n = seal_make(packet, &s, channel, w->trust->machine.secret);
 	if (n)
-		lcm_publish(w->lcm, channel, packet, (unsigned int)n);
+		spread(w, to, channel, packet, n);
 	else
 		log_error("lcm: out of memory; a message is lost");
 	free(packet);
 }
 
 /* Encode message @m of @type and send it on channel @name. */
-#define PUBLISH(w, name, type, m) \
+#define PUBLISH(w, to, name, type, m) \
 	do { \
 		const int room = type ## _encoded_size(m); \
 		uint8_t *data = malloc((size_t)room); \
-		publish(w, name, data, data ? \
+		publish(w, to, name, data, data ? \
 			type ## _encode(data, 0, room, m) : -1); \
 		free(data); \
 	} while (0)
 
 void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a)
 {
+	const struct local_who to = { a->key, a->client };
 	edm_ack_t m = {
 		.utime = clock_us(CLOCK_REALTIME),
 		.client = lent(a->client),
@@ -379,7 +453,7 @@ void jobs_lcm_ack(struct jobs_lcm *w, const struct jobs_lcm_ack *a)
 	};
 
 	memcpy(m.key, a->key, sizeof(m.key));
-	PUBLISH(w, "ACK", edm_ack_t, &m);
+	PUBLISH(w, &to, "ACK", edm_ack_t, &m);
 }
 
 void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e)
@@ -394,7 +468,7 @@ void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e)
 		.text = lent(e->text),
 	};
 
-	PUBLISH(w, "EVENT", edm_event_t, &m);
+	PUBLISH(w, NULL, "EVENT", edm_event_t, &m);
 }
 
 #define SEND_WORD(name)		.name = lent(s->name),
@@ -413,5 +487,5 @@ void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 	};
 
 	memcpy(m.pos_mm, s->pos_mm, sizeof(m.pos_mm));
-	PUBLISH(w, "STATUS", edm_status_t, &m);
+	PUBLISH(w, NULL, "STATUS", edm_status_t, &m);
 }

@@ -101,15 +101,19 @@ struct jobs_lcm_handlers {
 };
 
 /**
- * jobs_lcm_open() - join the channels of @machine.
- * Return: 0; -ENOMEM; -ENETUNREACH or another -errno if the group cannot be
- * joined.
+ * jobs_lcm_open() - listen for clients of @machine: by a socket of this host
+ * (local.h), and by multicast.  What is missing of these is in the log.
+ *
+ * Return: 0; -ENETUNREACH: there is neither; else -errno.
  */
 int jobs_lcm_open(struct jobs_lcm **ret, const struct udpm_url *url,
 	      const char *machine, const struct jobs_lcm_handlers *h);
 
-/** jobs_lcm_close() - @l may be NULL. */
+/** jobs_lcm_close() - @w may be NULL. */
 void jobs_lcm_close(struct jobs_lcm *w);
+
+/** jobs_lcm_look() - join the group, if that was not possible before. */
+void jobs_lcm_look(struct jobs_lcm *w, int64_t now_us);
 
 /** jobs_lcm_fd() - readable when jobs_lcm_handle() has something to do. */
 int jobs_lcm_fd(const struct jobs_lcm *w);

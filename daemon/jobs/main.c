@@ -229,6 +229,7 @@ static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 		log_notice("submit: dropped %d uploads that did not go on for "
 			   "30 s", dropped);
 	watch_store(j, now_us);
+	jobs_lcm_look(j->lcm, now_us);
 	checkpoint_tick(j, now_us);
 	store_retain(j->store, (int64_t)j->config->keep_jobs,
 		     (int64_t)j->config->keep_days, jobs_utime());
@@ -333,8 +334,6 @@ static int open_lcm(struct jobs *j)
 		.guest = status_guest,
 		.trust = &j->trust, .arg = j,
 	};
-	char why[UDPM_WHY_MAX];
-	int err;
 
 	if (j->url.ttl > 0 && j->trust.nkeys < 2) {
 		log_error("lcm: %s leaves this host, and no other host has a "
@@ -342,12 +341,8 @@ static int open_lcm(struct jobs *j)
 			  "makes one; then set the ttl", j->config->lcm_url);
 		return EX_CONFIG;
 	}
-	err = jobs_lcm_open(&j->lcm, &j->url, j->machine, &h);
-	if (err < 0) {
-		udpm_why(&j->url, err, why, sizeof(why));
-		log_error("lcm: cannot open %s: %s", j->config->lcm_url, why);
-	}
-	return err < 0 ? EX_UNAVAILABLE : 0;
+	return jobs_lcm_open(&j->lcm, &j->url, j->machine, &h) < 0 ?
+	       EX_UNAVAILABLE : 0;
 }
 
 static const int signals[] = { SIGTERM, SIGINT };

@@ -10,6 +10,8 @@
  */
 #include "object.h"
 
+#include "places.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
@@ -21,11 +23,8 @@
 #include <string.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <sys/stat.h>
-#include <sys/un.h>
 #include <unistd.h>
 
-#define SERVICE_USER	"edm-jobs"
 #define FULL_MS		1		/* time until a full ring is tried
 					 * again */
 
@@ -40,18 +39,6 @@ struct shm_commands {
 	uid_t service;			/* may connect, besides our own user */
 	pthread_t thread;
 };
-
-static int socket_address(struct sockaddr_un *ret, const char *machine)
-{
-	char path[OBJECT_PATH_MAX];
-	int err = object_path(path, machine, "command");
-
-	if (err < 0)
-		return err;
-	*ret = (struct sockaddr_un) { .sun_family = AF_UNIX };
-	snprintf(ret->sun_path, sizeof(ret->sun_path), "%s", path);
-	return 0;
-}
 
 /* -- edmd: the thread ----------------------------------------------------- */
 
@@ -144,19 +131,12 @@ static int thread_start(struct shm_commands *c)
 
 /* -- edmd: beginning and end ---------------------------------------------- */
 
-/* The mode of the socket comes from the umask, which this library must not
- * change. */
 static int listen_at(struct shm_commands *c, const struct sockaddr_un *at)
 {
 	snprintf(c->path, sizeof(c->path), "%.95s", at->sun_path);
-	if (unlink(c->path) < 0 && errno != ENOENT)
-		return -errno;
-	c->listening = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC |
-			      SOCK_NONBLOCK, 0);
-	if (c->listening < 0 ||
-	    bind(c->listening, (const struct sockaddr *)at, sizeof(*at)) < 0 ||
-	    chmod(c->path, 0660) < 0 || listen(c->listening, 4) < 0)
-		return -errno;
+	c->listening = places_listen(at, SOCK_SEQPACKET);
+	if (c->listening < 0)
+		return c->listening;
 	c->end = eventfd(0, EFD_CLOEXEC);
 	return c->end < 0 ? -errno : thread_start(c);
 }
@@ -175,9 +155,9 @@ static void commands_free(struct shm_commands *c)
 int shm_command_create(struct shm_commands **ret, const char *machine,
 		       uint32_t instance)
 {
-	const struct passwd *service = getpwnam(SERVICE_USER);
+	const struct passwd *service = getpwnam(PLACES_JOBS);
 	struct sockaddr_un at;
-	int err = socket_address(&at, machine);
+	int err = places_address(&at, machine, "command");
 	struct shm_commands *c;
 
 	if (err < 0)
@@ -239,7 +219,7 @@ static int head_take(int fd, uint32_t *ret_instance)
 int shm_command_open(int *ret, const char *machine, uint32_t *ret_instance)
 {
 	struct sockaddr_un at;
-	int err = socket_address(&at, machine), fd;
+	int err = places_address(&at, machine, "command"), fd;
 
 	if (err < 0)
 		return err;

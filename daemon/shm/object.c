@@ -5,66 +5,29 @@
 #include "object.h"
 
 #include "names.h"
+#include "places.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <pwd.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define FOLDER		"/dev/shm"
 #define CLAIM_TRIES	8		/* somebody else may remove it
 					 * meanwhile */
 
 /* A view of a record that may alias anything. */
 typedef uint64_t __attribute__((may_alias)) word_t;
 
-/* Was it made by root, by @service, or by this user?  Then nobody else can
- * change it. */
-static bool maker_is_trusted(uid_t uid, const char *service)
-{
-	struct passwd entry, *made = NULL;
-	char names[4096];
-
-	if (uid == 0 || uid == geteuid())
-		return true;
-	return getpwnam_r(service, &entry, names, sizeof(names), &made) == 0 &&
-	       made && uid == made->pw_uid;
-}
-
-static const char *folder_of(const char *what)
-{
-	static const struct {
-		const char *path, *service;
-	} folder[] = {
-		{ FOLDER "/edmd", "edmd" },
-		{ FOLDER "/edmd-jobs", "edm-jobs" },
-	};
-	const bool jobs = strcmp(what, "writer") == 0 ||
-			  strncmp(what, "program.", 8) == 0;
-	struct stat st;
-
-	if (lstat(folder[jobs].path, &st) == 0 && S_ISDIR(st.st_mode) &&
-	    !(st.st_mode & 0022) &&
-	    maker_is_trusted(st.st_uid, folder[jobs].service))
-		return folder[jobs].path;
-	return FOLDER;
-}
-
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 		const char *what)
 {
 	_Static_assert(SHM_NAME_MAX == NAMES_MACHINE_MAX, "one rule of names");
+	_Static_assert(OBJECT_PATH_MAX == PLACES_PATH_MAX, "one of paths");
 
-	if (!names_machine_ok(machine))
-		return -EINVAL;
-
-	snprintf(path, OBJECT_PATH_MAX, "%s/edmd.%.31s.%s", folder_of(what),
-		 machine, what);
-	return 0;
+	return places_path(path, machine, what);
 }
 
 void shm_path(char path[SHM_PATH_MAX], const char *machine, const char *what)
@@ -212,7 +175,7 @@ static int object_open_fd(void **ret, int fd, size_t bytes, bool writable)
 	if (size == 0)
 		return -ENOENT;
 	/* Another user could truncate the file and so end us by a signal. */
-	if (fstat(fd, &st) < 0 || !maker_is_trusted(st.st_uid, "edmd"))
+	if (fstat(fd, &st) < 0 || !places_is_trusted(st.st_uid, PLACES_EDMD))
 		return -EPERM;
 	if ((uint64_t)size != bytes)
 		return -EPROTO;

@@ -11,14 +11,7 @@
 
 #define OBJECT_PATH_MAX	SHM_PATH_MAX
 
-/**
- * object_path() - "/dev/shm/edmd.<machine>.<what>"; -EINVAL for a bad name.
- *
- * The path is in the folder of the object's maker, /dev/shm/edmd or
- * /dev/shm/edmd-jobs, if there is one that belongs to that service, root or
- * this user, and nobody else may write in it.  In /dev/shm anybody may make a
- * file and so block its name.
- */
+/** object_path() - places_path() of an object. */
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 		const char *what);
 

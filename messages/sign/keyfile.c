@@ -4,9 +4,10 @@
  */
 #include "keyfile.h"
 
+#include "places.h"
+
 #include <errno.h>
 #include <fcntl.h>
-#include <pwd.h>
 #include <sodium.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -16,7 +17,6 @@
 #include <unistd.h>
 
 #define STORE		"/var/lib/edmd"
-#define SERVICE_USER	"edm-jobs"
 #define FILE_MAX	2048
 #define NAME_CHARS	"ABCDEFGHIJKLMNOPQRSTUVWXYZ" \
 			"abcdefghijklmnopqrstuvwxyz0123456789._-"
@@ -99,22 +99,12 @@ static int mode_check(const struct stat *st, const char *path, char *said)
 	return 0;
 }
 
-static bool owner_is_trusted(uid_t uid)
-{
-	const struct passwd *service;
-
-	if (uid == 0 || uid == geteuid())
-		return true;
-	service = getpwnam(SERVICE_USER);
-	return service && uid == service->pw_uid;
-}
-
 static int owner_check(const struct stat *st, const char *path, char *said)
 {
-	if (owner_is_trusted(st->st_uid))
+	if (places_is_trusted(st->st_uid, PLACES_JOBS))
 		return 0;
 	return say(said, -EPERM, "key file %s belongs to user %u, who is "
-		   "neither root nor " SERVICE_USER " nor you, so it is not "
+		   "neither root nor " PLACES_JOBS " nor you, so it is not "
 		   "used; remove it, or name the right one with --key FILE",
 		   path, (unsigned int)st->st_uid);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* udpm.c - reads LCM's packets from a socket of our own */
+/* udpm.c - LCM's packets by sockets of our own */
 #include "udpm.h"
 
 #include <arpa/inet.h>
@@ -9,12 +9,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/uio.h>
 #include <time.h>
 #include <unistd.h>
 
 #define SHORT_MAGIC	0x4c433032u	/* "LC02" */
 #define HEAD_BYTES	8		/* magic, sequence number */
-#define PACKET_MAX	65507
 #define BUFFER_BYTES	(4 << 20)	/* the kernel gives as much as it
 					 * allows */
 #define ADDRESSES_MAX	64
@@ -22,14 +22,15 @@
 					 * interfaces */
 
 struct udpm {
-	int fd;
+	int fd, out;			/* what is sent has a port of its own */
+	struct sockaddr_in group;
 	bool only_here;			/* accept only packets of this host */
 	in_addr_t here[ADDRESSES_MAX];
 	int nhere;
 	time_t looked_s;
 	uint64_t strange;
 	char strange_from[UDPM_FROM_MAX];
-	uint8_t packet[PACKET_MAX + 1];
+	uint8_t packet[UDPM_PACKET_MAX + 1];
 };
 
 /* -- The URL -------------------------------------------------------------- */
@@ -130,8 +131,13 @@ int udpm_open(struct udpm **ret, const struct udpm_url *url)
 	if (!u)
 		return -ENOMEM;
 	u->only_here = url->ttl == 0;
+	u->group = url->group;
 	u->fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-	err = u->fd < 0 ? -errno : join(u->fd, url);
+	u->out = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	err = u->fd < 0 || u->out < 0 ? -errno : join(u->fd, url);
+	if (err == 0 &&
+	    set(u->out, IPPROTO_IP, IP_MULTICAST_TTL, (int)url->ttl) < 0)
+		err = -errno;
 	if (err < 0) {
 		udpm_close(u);
 		return err;
@@ -150,7 +156,7 @@ void udpm_why(const struct udpm_url *url, int err, char *to, size_t size)
 			 "it, or choose another port, in [lcm] url and "
 			 "--url",
 			 port, port);
-	else if (err == 0 || err == -ENODEV || err == -ENETUNREACH ||
+	else if (err == -ENODEV || err == -ENETUNREACH ||
 		 err == -EADDRNOTAVAIL)
 		snprintf(to, size, "this host has no way for multicast; ip "
 			 "link set lo multicast on; ip route add 224.0.0.0/4 "
@@ -165,6 +171,8 @@ void udpm_close(struct udpm *u)
 		return;
 	if (u->fd >= 0)
 		close(u->fd);
+	if (u->out >= 0)
+		close(u->out);
 	free(u);
 }
 
@@ -227,8 +235,7 @@ static void name_sender(char to[UDPM_FROM_MAX], const struct sockaddr_in *from)
 	snprintf(to, UDPM_FROM_MAX, "%s:%u", text, ntohs(from->sin_port));
 }
 
-static bool short_read(const uint8_t *packet, size_t bytes,
-		       struct udpm_packet *ret)
+bool udpm_split(struct udpm_packet *ret, const uint8_t *packet, size_t bytes)
 {
 	const uint8_t *end;
 	uint32_t magic;
@@ -249,19 +256,46 @@ bool udpm_take(struct udpm *u, struct udpm_packet *ret)
 {
 	struct sockaddr_in from = { .sin_family = AF_INET };
 	socklen_t size = sizeof(from);
-	ssize_t n = recvfrom(u->fd, u->packet, PACKET_MAX, 0,
+	ssize_t n = recvfrom(u->fd, u->packet, UDPM_PACKET_MAX, 0,
 			     (struct sockaddr *)&from, &size);
 
 	if (n < 0)
 		return false;
 	if ((!u->only_here || is_here(u, from.sin_addr.s_addr)) &&
-	    short_read(u->packet, (size_t)n, ret)) {
+	    udpm_split(ret, u->packet, (size_t)n)) {
 		name_sender(ret->from, &from);
 		return true;
 	}
 	u->strange++;
 	name_sender(u->strange_from, &from);
 	return false;
+}
+
+/* The number behind the magic counts packets for LCM's own reader, which does
+ * not look at it. */
+void udpm_parts(struct iovec to[UDPM_PARTS], const char *channel,
+		const void *data, size_t size)
+{
+	static const uint8_t head[HEAD_BYTES] = "LC02";
+
+	to[0] = (struct iovec) { (void *)(uintptr_t)head, sizeof(head) };
+	to[1] = (struct iovec) { (void *)(uintptr_t)channel,
+				 strlen(channel) + 1 };
+	to[2] = (struct iovec) { (void *)(uintptr_t)data, size };
+}
+
+void udpm_send(const struct udpm *u, const char *channel, const void *data,
+	       size_t size)
+{
+	struct iovec parts[UDPM_PARTS];
+	struct sockaddr_in to = u->group;
+	const struct msghdr m = {
+		.msg_name = &to, .msg_namelen = sizeof(to),
+		.msg_iov = parts, .msg_iovlen = UDPM_PARTS,
+	};
+
+	udpm_parts(parts, channel, data, size);
+	sendmsg(u->out, &m, MSG_NOSIGNAL);
 }
 
 uint64_t udpm_strange(const struct udpm *u, const char **ret_from)

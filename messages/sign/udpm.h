@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * udpm.h - LCM's packets from a socket of our own
+ * udpm.h - LCM's packets by sockets of our own
  *
  * LCM's library takes what any host sends to the port, on any interface, and
  * does not say who sent it. This socket receives only its own multicast group.
@@ -23,7 +23,10 @@
 #include <stdint.h>
 
 #define UDPM_FROM_MAX	32		/* "address:port" */
+#define UDPM_PACKET_MAX	65507
+#define UDPM_PARTS	3
 
+struct iovec;
 struct udpm;
 
 struct udpm_packet {
@@ -45,15 +48,12 @@ struct udpm_url {
  */
 const char *udpm_url_read(struct udpm_url *ret, const char *url);
 
-/** udpm_open() - join the group.  Return: 0 or -errno. */
+/** udpm_open() - join the group, to hear and to send.  Return: 0 or -errno. */
 int udpm_open(struct udpm **ret, const struct udpm_url *url);
 
 #define UDPM_WHY_MAX	256
 
-/**
- * udpm_why() - what @err of udpm_open() means, and what helps, in words; 0:
- * LCM's library could not open it.
- */
+/** udpm_why() - what @err of udpm_open() means, and what helps, in words. */
 void udpm_why(const struct udpm_url *url, int err, char *to, size_t size);
 
 /** udpm_close() - @u may be NULL. */
@@ -68,6 +68,20 @@ int udpm_fd(const struct udpm *u);
  * Return: true with @ret filled; it is valid until the next call.
  */
 bool udpm_take(struct udpm *u, struct udpm_packet *ret);
+
+/** udpm_send() - one packet; nothing says whether it arrives. */
+void udpm_send(const struct udpm *u, const char *channel, const void *data,
+	       size_t size);
+
+/**
+ * udpm_split() - the parts of one of LCM's short packets, which are lent.
+ * Return: false: it is none.
+ */
+bool udpm_split(struct udpm_packet *ret, const uint8_t *packet, size_t bytes);
+
+/** udpm_parts() - the other way: what a packet is made of. */
+void udpm_parts(struct iovec to[UDPM_PARTS], const char *channel,
+		const void *data, size_t size);
 
 /**
  * udpm_strange() - packets dropped so far, because they came from other hosts

@@ -32,6 +32,10 @@ def test_what_is_shared_is_made_for_the_group_and_nobody_else(systemd):
     assert all(r.split()[0].endswith("---") for n, r in rows.items()
                if n != "."), rows
     assert "Permission denied" in systemd.text("shared-nobody")
+    sockets = dict(r.split(" ", 1) for r in
+                   systemd.text("sockets-jobs").splitlines())
+    assert sockets["."] == "drwxr-x--- edm-jobs edm"
+    assert sockets["edmd.vm.jobs"] == "srw-rw---- edm-jobs edm"
 
 
 def test_a_program_on_the_network_sees_no_key(systemd):
@@ -40,7 +44,7 @@ def test_a_program_on_the_network_sees_no_key(systemd):
     print(said)
     assert "(edm)" in said and "\n4\n" in said
     assert "secret" not in said
-    assert said.count("Permission denied") == 3
+    assert said.count("Permission denied") == 5
 
 
 def test_the_unit_lets_it_have_its_chips(systemd):

@@ -18,9 +18,8 @@ from nacl.signing import VerifyKey
 from .keys import Key, KeyFileError, find_key, read_key
 from .layout import to_be_signed
 from .messages import Ack, Command, Event, JobChunk, Signed, Status
-from .udpm import Udpm
+from .way import Way
 
-URL = "udpm://239.255.76.67:7667?ttl=0"
 CHUNK = 32768
 WINDOW = 6
 REPEAT_S = 0.3
@@ -52,11 +51,12 @@ class Client:
     """Commands one machine.  One object belongs to one thread.
 
     key: a key file; without it that of $EDM_KEY, or the host's own.
+    url: that of LCM; without it the socket of this host, else way.URL.
     timeout: how long an answer is waited for, s.
     """
 
     def __init__(self, machine: str = "edm", key: str | None = None,
-                 url: str = URL, timeout: float = 3.0) -> None:
+                 url: str | None = None, timeout: float = 3.0) -> None:
         self.key: Key = read_key(key) if key else find_key(machine)
         if self.key.machine != machine:
             raise KeyFileError(
@@ -74,7 +74,7 @@ class Client:
         self._status: Status | None = None
         self._statuses = 0
         self.on_event: Callable[[Event], None] | None = None
-        self._net = Udpm(url)
+        self._way = Way(machine, url)
         self._takes: dict[str, Callable[[Signed], None]] = {
             f"EDM.{machine}.ACK": self._take_ack,
             f"EDM.{machine}.STATUS": self._take_status,
@@ -85,7 +85,7 @@ class Client:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._net.close()
+        self._way.close()
 
     # -- Signing and believing
 
@@ -102,7 +102,7 @@ class Client:
         channel = f"EDM.{self.machine}.{name}"
         signed = self.key.secret.sign(
             to_be_signed(channel, boot, count, data))
-        self._net.publish(channel, Signed(
+        self._way.publish(channel, Signed(
             self.key.public, boot, count, signed.signature, data).encode())
 
     def _take(self, channel: str, packet: bytes) -> None:
@@ -175,7 +175,7 @@ class Client:
         """Take what comes, for so long at most."""
         if not self._boot:
             self._say_hello()
-        packet = self._net.take(seconds)
+        packet = self._way.take(seconds)
         if packet:
             self._take(*packet)
 
@@ -375,7 +375,7 @@ class Client:
         wait = timeout or self.timeout
         end = time.monotonic() + wait
         # What came since anything was asked last is old.
-        while self._net.waits() and time.monotonic() < end:
+        while self._way.waits() and time.monotonic() < end:
             self.hear(0)
         n = self._statuses
         self._until(lambda: self._statuses > n, wait, lambda: None)

@@ -37,7 +37,7 @@ def _check(about: os.stat_result, path: Path, shared: bool) -> None:
     mode = about.st_mode
     if not stat.S_ISREG(mode):
         raise KeyFileError(f"key file {path} is not a plain file")
-    if shared and not _is_trusted(about.st_uid):
+    if shared and not is_trusted(about.st_uid):
         raise KeyFileError(
             f"key file {path} belongs to a user who is neither root nor "
             f"{SERVICE_USER} nor you, so it is not used; remove it")
@@ -113,7 +113,8 @@ def _parse(path: Path, text: str) -> Key:
     return key
 
 
-def _is_trusted(uid: int) -> bool:
+def is_trusted(uid: int) -> bool:
+    """Is it root, the service, or this user?"""
     if uid in (0, os.geteuid()):
         return True
     try:

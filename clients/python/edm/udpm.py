@@ -5,13 +5,26 @@ LCM's reader of long ones ends the process over some that nobody signed."""
 from __future__ import annotations
 
 import re
-import select
 import socket
 import struct
 
 MAGIC = b"LC02"
 IP_MULTICAST_ALL = 49               # Linux: only groups that this socket joined
 BUFFER = 4 << 20
+PACKET = 65536
+
+
+def join(channel: str, data: bytes) -> bytes:
+    """A packet."""
+    return MAGIC + bytes(4) + channel.encode() + b"\0" + data
+
+
+def split(packet: bytes) -> tuple[str, bytes] | None:
+    """Its channel and data."""
+    end = packet.find(b"\0", 8)
+    if packet[:4] != MAGIC or end < 0:
+        return None
+    return packet[8:end].decode("ascii", "replace"), packet[end + 1:]
 
 
 def _read(url: str) -> tuple[str, int, int]:
@@ -44,20 +57,12 @@ class Udpm:
         self._in.close()
         self._out.close()
 
+    def fileno(self) -> int:
+        return self._in.fileno()
+
     def publish(self, channel: str, data: bytes) -> None:
-        packet = MAGIC + bytes(4) + channel.encode() + b"\0" + data
-        self._out.sendto(packet, self._to)
+        self._out.sendto(join(channel, data), self._to)
 
-    def waits(self, seconds: float = 0) -> bool:
-        """Is there a packet, or does one come in time?"""
-        return bool(select.select([self._in], [], [], seconds)[0])
-
-    def take(self, seconds: float) -> tuple[str, bytes] | None:
-        """The next packet's channel and data, if one comes in time."""
-        if not self.waits(seconds):
-            return None
-        packet = self._in.recv(65536)
-        end = packet.find(b"\0", 8)
-        if packet[:4] != MAGIC or end < 0:
-            return None
-        return packet[8:end].decode("ascii", "replace"), packet[end + 1:]
+    def take(self) -> tuple[str, bytes] | None:
+        """The channel and data of a packet that waits."""
+        return split(self._in.recv(PACKET))

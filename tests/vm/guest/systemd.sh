@@ -36,6 +36,7 @@ pull sim0 20 up
 # Who may do what with what they share.
 (cd /dev/shm/edmd && stat -c '%n %A %U %G' . *) > shared 2>&1
 (cd /dev/shm/edmd-jobs && stat -c '%n %A %U %G' . *) > shared-jobs 2>&1
+(cd /run/edmd-jobs && stat -c '%n %A %U %G' . *) > sockets-jobs 2>&1
 setpriv --reuid=nobody --regid=nogroup --clear-groups \
 	ls /dev/shm/edmd > shared-nobody 2>&1
 
@@ -51,7 +52,8 @@ StandardError=file:$PWD/dds-sees
 ExecStart=
 ExecStart=/bin/sh -c 'id; head -c 4 /dev/shm/edmd/edmd.vm.status | wc -c; \
 	cat /var/lib/edmd/vm.key; touch /dev/shm/edmd/edmd.vm.program.9; \
-	touch /dev/shm/edmd-jobs/edmd.vm.program.9; true'
+	touch /dev/shm/edmd-jobs/edmd.vm.program.9; \
+	ls /run/edmd /run/edmd-jobs; true'
 END
 systemctl daemon-reload
 systemctl start edm-dds.service
