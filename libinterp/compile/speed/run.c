@@ -1,0 +1,430 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* run.c - runs of short lines, cut at their corners */
+#include "speed/run.h"
+
+#include "interp/axes.h"
+#include "interp/smaller.h"
+
+#include "grow.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CHORD		20		/* tolerances: over it a turn shows */
+#define CORNER		4		/* boxes: turned by more over a chord */
+#define BESIDE		3		/* times as much as a chord away */
+#define RATE_MM		0.1		/* to both sides */
+#define RATE_MOST	20		/* beside the path, a rounding of it
+					 * counts so often */
+#define POINT_MM	0.025		/* between points */
+#define END_WEIGHT_MM	0.05
+
+static double at(const struct run *r, size_t i, uint32_t k)
+{
+	return r->x[i * r->columns + k];
+}
+
+static double slope(const struct run *r, size_t a, size_t b, uint32_t k)
+{
+	return (at(r, b, k) - at(r, a, k)) / (r->s_mm[b] - r->s_mm[a]);
+}
+
+static bool is_along(const struct run *r, uint32_t k)
+{
+	return r->along >> k & 1;
+}
+
+/* What a rounding makes of column @k where it goes by @rate in a mm. */
+static double box_of(const struct run *r, uint32_t k, double rate)
+{
+	return r->tolerance[k] *
+	       (is_along(r, k) ? 1 : 1 + smaller(fabs(rate), RATE_MOST));
+}
+
+/* -- Turns ----------------------------------------------------------------- */
+
+/* The nodes @mm before and behind node @i, or the ends. */
+struct chords {
+	size_t before, behind;
+};
+
+static struct chords chords_of(const struct run *r, size_t i, double mm,
+			       size_t first, size_t last)
+{
+	struct chords c = { i, i };
+
+	while (c.before > first && r->s_mm[i] - r->s_mm[c.before] < mm)
+		c.before--;
+	while (c.behind < last && r->s_mm[c.behind] - r->s_mm[i] < mm)
+		c.behind++;
+	return c;
+}
+
+static double chord_mm(const struct run *r)
+{
+	double most = 0;
+
+	for (uint32_t k = 0; k < r->columns; k++)
+		if (is_along(r, k) || r->along == 0)
+			most = larger(most, r->tolerance[k]);
+	return CHORD * most;
+}
+
+/* How much the path turns at node @i over chords, as a share of what makes a
+ * corner. */
+static double turn_at(const struct run *r, size_t i, size_t first, size_t last)
+{
+	struct chords c;
+	double most = 0, least_mm;
+
+	if (i <= first || i >= last)
+		return 0;
+	c = chords_of(r, i, 0.95 * chord_mm(r), first, last);
+	least_mm = smaller(r->s_mm[i] - r->s_mm[c.before],
+			   r->s_mm[c.behind] - r->s_mm[i]);
+	for (uint32_t k = 0; k < r->columns; k++) {
+		const double a = slope(r, c.before, i, k);
+		const double b = slope(r, i, c.behind, k);
+
+		most = larger(most, fabs(b - a) * least_mm /
+			      (CORNER * box_of(r, k, fabs(a) + fabs(b))));
+	}
+	return most;
+}
+
+/* Which node of those turns most? */
+static size_t sharpest(const struct run *r, size_t from, size_t to,
+		       size_t first, size_t last)
+{
+	double most = 0;
+	size_t ret = from;
+
+	for (size_t i = from; i <= to; i++) {
+		const double turn = turn_at(r, i, first, last);
+
+		if (turn > most)
+			ret = i;
+		most = larger(most, turn);
+	}
+	return ret;
+}
+
+static bool is_corner(const struct run *r, size_t i)
+{
+	const size_t last = r->n - 1;
+	const double turn = turn_at(r, i, 0, last);
+	struct chords c;
+
+	if (turn <= 1)
+		return false;
+	c = chords_of(r, i, 0.95 * chord_mm(r), 0, last);
+	return sharpest(r, c.before, c.behind, 0, last) == i &&
+	       turn > BESIDE * turn_at(r, c.before, 0, last) &&
+	       turn > BESIDE * turn_at(r, c.behind, 0, last);
+}
+
+/* -- Points ---------------------------------------------------------------- */
+
+/* Of a part: its nodes, and places between them. */
+struct points {
+	size_t n;
+	double *s_mm, *x, *box, *weight;
+	size_t *node;			/* the one at it or before it */
+};
+
+static void points_free(struct points *p)
+{
+	free(p->s_mm);
+	free(p->x);
+	free(p->box);
+	free(p->weight);
+	free(p->node);
+}
+
+static size_t parts_of_line(double mm)
+{
+	return (size_t)larger(ceil(mm / POINT_MM - 1e-9), 1);
+}
+
+static int points_make(struct points *p, const struct run *r, size_t first,
+		       size_t last)
+{
+	size_t n = 1;
+
+	for (size_t i = first; i < last; i++)
+		n += parts_of_line(r->s_mm[i + 1] - r->s_mm[i]);
+	*p = (struct points) {
+		.s_mm = malloc(n * sizeof(double)),
+		.x = malloc(n * r->columns * sizeof(double)),
+		.box = malloc(n * r->columns * sizeof(double)),
+		.weight = malloc(n * sizeof(double)),
+		.node = malloc(n * sizeof(size_t)),
+	};
+	if (p->s_mm && p->x && p->box && p->weight && p->node)
+		return 0;
+	points_free(p);
+	return -ENOMEM;
+}
+
+/* How the slope of a column changes in a mm at node @i. */
+static double bend_at(const struct run *r, size_t i, uint32_t k, size_t first,
+		      size_t last)
+{
+	if (last - first < 2)
+		return 0;
+	if (i <= first)
+		i = first + 1;
+	if (i >= last)
+		i = last - 1;
+	return (slope(r, i, i + 1, k) - slope(r, i - 1, i, k)) * 2 /
+	       (r->s_mm[i + 1] - r->s_mm[i - 1]);
+}
+
+/*
+ * Between two nodes that bend the same way a line may be an arc of the lesser
+ * bend: a place there is off the line by its sag, or not.
+ */
+static void add_between(struct points *p, const struct run *r, size_t i,
+			double q, const struct chords *part)
+{
+	const double mm = r->s_mm[i + 1] - r->s_mm[i];
+
+	for (uint32_t k = 0; k < r->columns; k++) {
+		const double a = bend_at(r, i, k, part->before, part->behind);
+		const double b = bend_at(r, i + 1, k, part->before,
+					 part->behind);
+		const double bow = q * (mm - q) / 2;
+		const double sag = a * b <= 0 ? 0 :
+				   copysign(smaller(fabs(a), fabs(b)), a) * bow;
+		const size_t at_k = p->n * r->columns + k;
+
+		p->x[at_k] = at(r, i, k) + slope(r, i, i + 1, k) * q -
+			     0.75 * sag;
+		p->box[at_k] = r->corner_mm + fabs(sag) / 2 +
+			       0.3 * larger(fabs(a), fabs(b)) * bow;
+	}
+}
+
+static void add_line(struct points *p, const struct run *r, size_t i,
+		     const struct chords *part)
+{
+	const double mm = r->s_mm[i + 1] - r->s_mm[i];
+	const size_t n = parts_of_line(mm);
+
+	for (size_t j = 0; j < n; j++, p->n++) {
+		p->s_mm[p->n] = r->s_mm[i] + mm * (double)j / (double)n;
+		p->node[p->n] = i;
+		if (j > 0) {
+			add_between(p, r, i, mm * (double)j / (double)n, part);
+			continue;
+		}
+		for (uint32_t k = 0; k < r->columns; k++) {
+			p->x[p->n * r->columns + k] = at(r, i, k);
+			p->box[p->n * r->columns + k] = 0;
+		}
+	}
+}
+
+/* The boxes of a rounding, by the rates around each point. */
+static void widen(struct points *p, const struct run *r)
+{
+	size_t a = 0, b = 0;
+
+	for (size_t i = 0; i < p->n; i++) {
+		while (p->s_mm[i] - p->s_mm[a + 1] > RATE_MM)
+			a++;
+		while (b + 1 < p->n && p->s_mm[b] - p->s_mm[i] < RATE_MM)
+			b++;
+		for (uint32_t k = 0; k < r->columns; k++) {
+			const double rate = (p->x[b * r->columns + k] -
+					     p->x[a * r->columns + k]) /
+					    (p->s_mm[b] - p->s_mm[a]);
+
+			p->box[i * r->columns + k] += box_of(r, k, rate);
+		}
+	}
+}
+
+static void weigh(struct points *p)
+{
+	const size_t n = p->n;
+
+	for (size_t i = 0; i < n; i++)
+		p->weight[i] = (p->s_mm[i + 1 < n ? i + 1 : i] -
+				p->s_mm[i > 0 ? i - 1 : i]) / 2;
+	p->weight[0] = larger(p->weight[0], END_WEIGHT_MM);
+	p->weight[n - 1] = larger(p->weight[n - 1], END_WEIGHT_MM);
+}
+
+static void fill(struct points *p, const struct run *r, size_t first,
+		 size_t last)
+{
+	const struct chords part = { first, last };
+
+	for (size_t i = first; i < last; i++)
+		add_line(p, r, i, &part);
+	p->s_mm[p->n] = r->s_mm[last];
+	p->node[p->n] = last;
+	for (uint32_t k = 0; k < r->columns; k++) {
+		p->x[p->n * r->columns + k] = at(r, last, k);
+		p->box[p->n * r->columns + k] = 0;
+	}
+	p->n++;
+	widen(p, r);
+	weigh(p);
+}
+
+/* -- Parts ----------------------------------------------------------------- */
+
+/* Is column @k straight, within its boxes?  @ret: by so much in a mm. */
+static bool is_straight(const struct points *p, uint32_t columns, uint32_t k,
+			double *ret)
+{
+	double w = 0, s = 0, x = 0, ss = 0, sx = 0;
+
+	for (size_t i = 0; i < p->n; i++) {
+		w += p->weight[i];
+		s += p->weight[i] * p->s_mm[i];
+		x += p->weight[i] * p->x[i * columns + k];
+	}
+	for (size_t i = 0; i < p->n; i++) {
+		const double ds = p->s_mm[i] - s / w;
+
+		ss += p->weight[i] * ds * ds;
+		sx += p->weight[i] * ds * (p->x[i * columns + k] - x / w);
+	}
+	*ret = sx / ss;
+	for (size_t i = 0; i < p->n; i++)
+		if (!(fabs(p->x[i * columns + k] - x / w -
+			   *ret * (p->s_mm[i] - s / w)) <=
+		      p->box[i * columns + k]))
+			return false;
+	return true;
+}
+
+static bool is_line(const struct points *p, const struct run *r,
+		    struct run_part *ret)
+{
+	for (uint32_t k = 0; k < r->columns; k++)
+		if (!is_straight(p, r->columns, k, &ret->straight[k]))
+			return false;
+	return true;
+}
+
+/* Of a part that has no shape: the node near to point @i that turns most. */
+static size_t cut_at(const struct run *r, const struct points *p, size_t i,
+		     const struct run_part *part)
+{
+	const size_t node = p->node[i];
+	const struct chords c = chords_of(r, node, 2.5 * chord_mm(r),
+					  part->first, part->last);
+	const size_t from = c.before > part->first ? c.before :
+						     part->first + 1;
+	const size_t to = c.behind < part->last ? c.behind : part->last - 1;
+	const size_t ret = sharpest(r, from, to < from ? from : to,
+				    part->first, part->last);
+
+	return ret;
+}
+
+/* Return: 0; @ret_cut: where to cut it, or its last node. */
+static int fit(const struct run *r, struct run_part *part, size_t *ret_cut)
+{
+	struct shape_points sp = { .columns = r->columns };
+	struct points p;
+	size_t corner;
+	int err;
+
+	*ret_cut = part->last;
+	part->shape = (struct shape) { .columns = r->columns };
+	if (points_make(&p, r, part->first, part->last) < 0)
+		return -ENOMEM;
+	fill(&p, r, part->first, part->last);
+	if (part->last - part->first < 2 || is_line(&p, r, part)) {
+		for (uint32_t k = 0; part->last - part->first < 2 &&
+				     k < r->columns; k++)
+			part->straight[k] = slope(r, part->first, part->last,
+						  k);
+		points_free(&p);
+		return 0;
+	}
+	sp.n = p.n;
+	sp.s_mm = p.s_mm;
+	sp.x = p.x;
+	sp.box = p.box;
+	sp.weight = p.weight;
+	err = shape_fit(&sp, &part->shape, &corner);
+	if (err == 0 && corner < p.n) {
+		*ret_cut = cut_at(r, &p, corner, part);
+		shape_free(&part->shape);
+	}
+	points_free(&p);
+	return err;
+}
+
+/* Ends of parts that are still to be found, the next one last. */
+struct ends {
+	size_t *at, n, room;
+};
+
+static int push(struct ends *e, size_t node)
+{
+	if (e->n == e->room &&
+	    grow_array(&e->at, &e->room, sizeof(*e->at)) < 0)
+		return -ENOMEM;
+	e->at[e->n++] = node;
+	return 0;
+}
+
+static int find_corners(const struct run *r, struct ends *e)
+{
+	int err = push(e, r->n - 1);
+
+	for (size_t i = r->n - 1; err == 0 && i-- > 1;)
+		if (is_corner(r, i))
+			err = push(e, i);
+	return err;
+}
+
+int run_parts(const struct run *r,
+	      int (*found)(void *to, struct run_part *p), void *to)
+{
+	struct ends ends = { NULL, 0, 0 };
+	struct run_part part = { .first = 0 };
+	int err = find_corners(r, &ends);
+
+	while (err == 0 && ends.n > 0) {
+		size_t cut;
+
+		part.last = ends.at[ends.n - 1];
+		err = fit(r, &part, &cut);
+		if (err == 0 && cut < part.last) {
+			err = push(&ends, cut);
+			continue;
+		}
+		if (err == 0)
+			err = found(to, &part);
+		shape_free(&part.shape);
+		part.first = part.last;
+		ends.n--;
+	}
+	free(ends.at);
+	return err;
+}
+
+void run_part_way(const struct run_part *p, double s_mm, double *ret)
+{
+	if (p->shape.n > 0) {
+		shape_way(&p->shape, s_mm, ret);
+		return;
+	}
+	for (uint32_t k = 0; k < p->shape.columns; k++) {
+		double *way = ret + k * INTERP_AXES_WAY;
+
+		way[0] = p->straight[k];
+		way[1] = way[2] = 0;
+	}
+}
