@@ -19,7 +19,7 @@
 #define STAND_MM	2e-5
 #define CORNER_MM	1e-4
 #define FARTHER		1.2
-#define APART_MM	0.025
+#define APART_MM	0.05
 #define APART_LINE_MM	0.1
 
 /* An interval that takes longer is divided where the acceleration changes. */
@@ -94,16 +94,15 @@ static bool is_straight(const struct profile *p, const double *way)
 	return true;
 }
 
-/* Onward from @s_mm: the nearer to an end, the less. */
+/* Onward: the nearer to an end, the less. */
 static double step_mm(const struct profile *p, double gone_mm, double left_mm,
-		      bool from_stand, bool to_stand)
+		      const double least_mm[2])
 {
 	const double apart = is_straight(p, way_at(p, p->n - 1)) ?
 			     APART_LINE_MM : APART_MM;
-	const double a = larger((FARTHER - 1) * gone_mm,
-				from_stand ? STAND_MM : CORNER_MM);
+	const double a = larger((FARTHER - 1) * gone_mm, least_mm[0]);
 	const double b = larger((FARTHER - 1) / FARTHER * left_mm,
-				to_stand ? STAND_MM : CORNER_MM);
+				least_mm[1]);
 
 	return smaller(apart, smaller(a, b));
 }
@@ -113,11 +112,12 @@ static int add_section(struct profile *p, const struct interp_axes *x,
 		       uint32_t n)
 {
 	const double from = sections[k].from_mm, to = sections[k].to_mm;
+	const double least_mm[] = { k == 0 ? STAND_MM : CORNER_MM,
+				    k + 1 == n ? STAND_MM : CORNER_MM };
 	int err = add(p, x, sections, k, from);
 
 	for (double s = from; err == 0;) {
-		const double step = step_mm(p, s - from, to - s, k == 0,
-					    k + 1 == n);
+		const double step = step_mm(p, s - from, to - s, least_mm);
 
 		if (s + 1.5 * step >= to)
 			break;
@@ -306,7 +306,8 @@ static size_t lower_ceilings(struct profile *p, const struct interp_axes *x)
 	return some;
 }
 
-static int find_speeds(struct profile *p, const struct interp_axes *x)
+static int find_speeds(struct profile *p, const struct interp_axes *x,
+		       int lowerings)
 {
 	for (int turn = 0;; turn++) {
 		memcpy(p->v_mm_s, p->most_mm_s, p->n * sizeof(double));
@@ -314,7 +315,7 @@ static int find_speeds(struct profile *p, const struct interp_axes *x)
 		pass(p, x, -1);
 		if (caps_round(p, x) < 0)
 			return -ENOMEM;
-		if (turn == LOWERINGS || lower_ceilings(p, x) == 0)
+		if (turn == lowerings || lower_ceilings(p, x) == 0)
 			return 0;
 	}
 }
@@ -379,7 +380,7 @@ int profile_solve(struct profile *p, const struct interp_axes *x,
 	*p = (struct profile) { .columns = x->n };
 	err = add_all(p, x, sections, n, corner_mm_s);
 	for (int round = 0; err == 0; round++) {
-		err = find_speeds(p, x);
+		err = find_speeds(p, x, round == ROUNDS ? LOWERINGS : 0);
 		if (err < 0 || round == ROUNDS)
 			break;
 		err = divide(p, x, sections);

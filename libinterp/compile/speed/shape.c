@@ -88,9 +88,8 @@ static void column_of(const struct shape *f, size_t interval,
 
 /* -- Least squares --------------------------------------------------------- */
 
-static void add_point(const struct shape *f, const struct shape_points *p,
-		      size_t interval, size_t i, const double by[ORDER],
-		      struct band *eq)
+static void add_point(const struct shape_points *p, size_t i,
+		      const double by[ORDER], struct band *eq, size_t interval)
 {
 	const double *x = p->x + i * p->columns;
 
@@ -100,8 +99,8 @@ static void add_point(const struct shape *f, const struct shape_points *p,
 
 		for (size_t q = r; q < ORDER; q++)
 			row[q - r] += w * by[q];
-		for (uint32_t k = 0; k < f->columns; k++)
-			eq->b[(interval + r) * f->columns + k] += w * x[k];
+		for (uint32_t k = 0; k < p->columns; k++)
+			eq->b[(interval + r) * p->columns + k] += w * x[k];
 	}
 }
 
@@ -155,7 +154,7 @@ static int solve(struct shape *f, const struct shape_points *p)
 			for (int r = 0; r < ORDER; r++)
 				by[r] = polynomial(b.of[r],
 						   (p->s_mm[i] - from) / h);
-			add_point(f, p, k, i, by, &eq);
+			add_point(p, i, by, &eq, k);
 		}
 		add_stiffness(&b, k, h, &eq);
 	}
