@@ -24,6 +24,8 @@
 
 /* An interval that takes longer is divided where the acceleration changes. */
 #define LONG_S		1e-3
+#define SHORT_S		2e-4		/* no shorter one is divided */
+#define MUCH_PARTS	3
 #define ROUNDS		2
 
 /* More than this of an axis: the ceiling there is lowered, some times. */
@@ -197,38 +199,60 @@ static double time_s(const struct motion *m, double j, double mm)
 	return t;
 }
 
-/* From place @b to place @i with the greatest jerk. */
+/* @mm on with the jerk @j; false: it stands before. */
+static bool go(struct motion *m, double j, double mm)
+{
+	const double t = time_s(m, j, mm);
+
+	if (isinf(t))
+		return false;
+	m->v_mm_s += (m->a_mm_s2 + j * t / 2) * t;
+	m->a_mm_s2 += j * t;
+	return true;
+}
+
+/* The same with the greatest jerk that the axes have at both ends, from place
+ * @b to place @i. */
+static bool go_on(const struct profile *p, const struct interp_axes *x,
+		  struct motion *m, size_t b, size_t i)
+{
+	const int dir = i > b ? 1 : -1;
+	const double mm = fabs(p->s_mm[i] - p->s_mm[b]);
+	const double j = most_mm_s3(p, x, b, m, dir);
+	struct motion there = *m;
+	double end;
+
+	if (!go(&there, j, mm))
+		return false;
+	there.v_mm_s = smaller(there.v_mm_s, p->v_mm_s[i]);
+	end = most_mm_s3(p, x, i, &there, dir);
+	return go(m, smaller(j, larger(end, INTERP_AXES_KEPT * j)), mm);
+}
+
+/* From place @b to place @i. */
 static void step(struct profile *p, const struct interp_axes *x,
 		 struct motion *m, size_t b, size_t i)
 {
 	const int dir = i > b ? 1 : -1;
-	const double mm = fabs(p->s_mm[i] - p->s_mm[b]);
+	const double mm = fabs(p->s_mm[i] - p->s_mm[b]), v = m->v_mm_s;
 	const double top = p->v_mm_s[i];
-	double j, t, most, v = m->v_mm_s, a = m->a_mm_s2, rise;
+	const double a = smaller(m->a_mm_s2, most_mm_s2(p, x, b, v, dir));
+	double most, rise;
 
-	m->a_mm_s2 = a = smaller(a, most_mm_s2(p, x, b, v, dir));
-	if (!(mm > 0)) {
-		m->v_mm_s = p->v_mm_s[i] = smaller(v, top);
-		return;
-	}
-	j = most_mm_s3(p, x, b, m, dir);
-	t = time_s(m, j, mm);
-	if (isinf(t)) {
-		m->v_mm_s = m->a_mm_s2 = p->v_mm_s[i] = 0;
-		return;
-	}
-	rise = a + j * t;
-	m->v_mm_s = v + (a + j * t / 2) * t;
-	m->a_mm_s2 = rise;
+	m->a_mm_s2 = a;
+	if (mm > 0 && !go_on(p, x, m, b, i))
+		*m = (struct motion) { 0, 0 };
+	rise = m->a_mm_s2;
 	most = most_mm_s2(p, x, i, smaller(m->v_mm_s, top), dir);
-	if (rise > most) {
+	if (mm > 0 && rise > most) {
 		m->a_mm_s2 = most;
 		m->v_mm_s = sqrt(larger(v * v + (a + most) * mm, 0));
 	}
 	if (m->v_mm_s > top) {
 		m->v_mm_s = top;
-		m->a_mm_s2 = larger(smaller((top * top - v * v) / (2 * mm),
-					    rise), 0);
+		if (mm > 0)
+			m->a_mm_s2 = larger(smaller((top * top - v * v) /
+						    (2 * mm), rise), 0);
 	}
 	p->v_mm_s[i] = m->v_mm_s;
 }
@@ -322,6 +346,14 @@ static int find_speeds(struct profile *p, const struct interp_axes *x,
 
 /* -- More places ----------------------------------------------------------- */
 
+/* Do the axes need more than they have, beside that interval? */
+static bool asks_much(const struct profile *p, const struct interp_axes *x,
+		      size_t i)
+{
+	return profile_asked(p, x, i).j > MOST_J ||
+	       profile_asked(p, x, i + 1).j > MOST_J;
+}
+
 /* Into how many parts the interval behind place @i is divided. */
 static int parts_of(const struct profile *p, const struct interp_axes *x,
 		    size_t i)
@@ -330,6 +362,10 @@ static int parts_of(const struct profile *p, const struct interp_axes *x,
 						       0;
 	double a, change = 0;
 
+	if (!(t > SHORT_S))
+		return 1;
+	if (asks_much(p, x, i))
+		return MUCH_PARTS;
 	if (!(t > LONG_S))
 		return 1;
 	a = a_behind(p, i);
