@@ -308,7 +308,8 @@ struct profile_asked profile_asked(const struct profile *p,
 	return ret;
 }
 
-/* Return: how many ceilings were lowered. */
+/* On a bend.  Along a line it is what the places are too far apart for.  Return:
+ * how many ceilings were lowered. */
 static size_t lower_ceilings(struct profile *p, const struct interp_axes *x)
 {
 	size_t some = 0;
@@ -322,7 +323,7 @@ static size_t lower_ceilings(struct profile *p, const struct interp_axes *x)
 		if (k.j > MOST_J)
 			by = smaller(by, cbrt(1 / k.j));
 		by = larger(by, LOWER) * p->v_mm_s[i];
-		if (by < p->v_mm_s[i] && by < p->most_mm_s[i]) {
+		if (by < p->v_mm_s[i] && !is_straight(p, way_at(p, i))) {
 			p->most_mm_s[i] = by;
 			some++;
 		}
