@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* test_profile.c - shapes of short lines, and speeds along them */
+#include "speed/knots.h"
 #include "speed/profile.h"
 #include "speed/run.h"
 
@@ -157,8 +158,7 @@ static void a_line_takes_the_time_of_its_s_curve(void **state)
 
 	(void)state;
 	assert_int_equal(profile_solve(&p, &axes, &k, 1, &corner), 0);
-	assert_true(profile_s(&p) > exactly);
-	assert_true(profile_s(&p) < exactly * 1.001);
+	assert_true(fabs(profile_s(&p) / exactly - 1) < 1e-3);
 	profile_free(&p);
 }
 
@@ -196,6 +196,76 @@ static void along_a_wave_each_axis_keeps_its_limits(void **state)
 
 		write_curve(&r, wave, mm[k], 20, 0.001);
 		assert_int_equal(run_parts(&r.run, solve_part, &r.run), 0);
+	}
+}
+
+/* -- Tables ---------------------------------------------------------------- */
+
+/* By differences of places a millisecond apart. */
+static void check_table(const struct interp_speeds *k, struct run_part *part)
+{
+	const double t = 1e-3, end = k->at[k->n - 1].t_s;
+	double s[4], way[2 * INTERP_AXES_WAY], most = 0;
+
+	for (double from = 0; from + 3 * t < end; from += t) {
+		struct interp_scurve_state middle;
+		double j, a;
+
+		for (int i = 0; i < 4; i++)
+			s[i] = interp_speeds_at(k, from + i * t).x_mm;
+		assert_true(s[0] <= s[1] && s[1] <= s[2] && s[2] <= s[3]);
+		assert_true(fabs(interp_speeds_s(k, s[1]) - from - t) < 1e-6);
+		middle = interp_speeds_at(k, from + 1.5 * t);
+		a = middle.a_mm_s2;
+		j = (s[3] - 3 * s[2] + 3 * s[1] - s[0]) / (t * t * t);
+		run_part_way(part, middle.x_mm, way);
+		for (int i = 0; i < 2; i++) {
+			const double *w = way + i * INTERP_AXES_WAY;
+			const double v = middle.v_mm_s;
+
+			most = larger(most, fabs(w[0] * j + 3 * w[1] * v * a +
+						 w[2] * v * v * v) /
+					    axes.j_mm_s3[i]);
+			assert_true(fabs(w[0] * a + w[1] * v * v) <
+				    1.03 * axes.a_mm_s2[i]);
+		}
+	}
+	if (most > 1.15)
+		fail_msg("%g times an axis's jerk", most);
+}
+
+static int write_table(void *to, struct run_part *part)
+{
+	const struct run *r = to;
+	const double corner = 0;
+	const struct profile_section k = {
+		r->s_mm[part->first], r->s_mm[part->last], INFINITY, part_way,
+		part
+	};
+	struct interp_speed_knot *knots;
+	struct profile p;
+	long n;
+
+	assert_int_equal(profile_solve(&p, &axes, &k, 1, &corner), 0);
+	n = knots_make(&p, &axes, &knots);
+	assert_in_range(n, 2, 100);
+	assert_true(fabs(knots[n - 1].t_s - profile_s(&p)) < 1e-12);
+	check_table(&(struct interp_speeds) { knots, (size_t)n }, part);
+	free(knots);
+	profile_free(&p);
+	return 0;
+}
+
+static void a_table_of_few_knots_keeps_the_limits(void **state)
+{
+	static struct nodes r;
+
+	(void)state;
+	for (int k = 0; k < 3; k++) {
+		const double mm[] = { 0.005, 0.02, 0.2 };
+
+		write_curve(&r, wave, mm[k], 20, 0.001);
+		assert_int_equal(run_parts(&r.run, write_table, &r.run), 0);
 	}
 }
 
@@ -250,6 +320,7 @@ int main(void)
 		cmocka_unit_test(a_line_takes_the_time_of_its_s_curve),
 		cmocka_unit_test(along_a_wave_each_axis_keeps_its_limits),
 		cmocka_unit_test(the_way_back_takes_the_same_time),
+		cmocka_unit_test(a_table_of_few_knots_keeps_the_limits),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);
