@@ -23,8 +23,8 @@ struct band {
 /** band_make() - a system of zeros.  Return: 0, -ENOMEM. */
 int band_make(struct band *s, size_t n, uint32_t sides);
 
-/** band_solve() - @s->b becomes the unknowns; @s->a is used up.  The matrix must
- *  be positive definite. */
+/** band_solve() - @s->b becomes the unknowns; @s->a is used up.  The matrix
+ *  must be positive definite. */
 void band_solve(struct band *s);
 
 void band_free(struct band *s);

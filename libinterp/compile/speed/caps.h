@@ -10,8 +10,8 @@
 #include "speed/profile.h"
 
 /**
- * caps_round() - lower the speeds of @p so that no axis needs more than its jerk
- * to let go of its acceleration.
+ * caps_round() - lower the speeds of @p so that no axis needs more than its
+ * jerk to let go of its acceleration.
  *
  * Return: 0, -ENOMEM.
  */

@@ -308,8 +308,8 @@ struct profile_asked profile_asked(const struct profile *p,
 	return ret;
 }
 
-/* On a bend.  Along a line it is what the places are too far apart for.  Return:
- * how many ceilings were lowered. */
+/* On a bend.  Along a line it is what the places are too far apart for.
+ * Return: how many ceilings were lowered. */
 static size_t lower_ceilings(struct profile *p, const struct interp_axes *x)
 {
 	size_t some = 0;

@@ -212,8 +212,8 @@ static struct off off_of(const struct shape *f, const struct shape_points *p,
 	return ret;
 }
 
-/* Which intervals to halve.  Return: how many; @ret_corner: a point beside which
- * none can be. */
+/* Which intervals to halve.  Return: how many; @ret_corner: a point beside
+ * which none can be. */
 static size_t look(const struct shape *f, const struct shape_points *p,
 		   uint8_t *halve, size_t *ret_corner)
 {
@@ -278,8 +278,8 @@ static int halve_some(struct shape *f, const uint8_t *halve)
 	return 0;
 }
 
-/* Once: solve, look, and halve.  Return: 1: again, 0: it is found, or there is a
- * corner; -ENOMEM. */
+/* Once: solve, look, and halve.  Return: 1: again, 0: it is found, or there is
+ * a corner; -ENOMEM. */
 static int fit_once(struct shape *f, const struct shape_points *p,
 		    size_t *ret_corner)
 {

@@ -55,8 +55,8 @@ struct interp_straight interp_axes_straight(const struct interp_axes *x,
  *  its share for going along. */
 double interp_axes_mm_s(const struct interp_axes *x, const double *way);
 
-/** interp_axes_mm_s2() - the accelerations along the path at @v_mm_s.  What they
- *  take of the jerk on a bend leaves the share of it. */
+/** interp_axes_mm_s2() - the accelerations along the path at @v_mm_s.  What
+ *  they take of the jerk on a bend leaves the share of it. */
 struct interp_range interp_axes_mm_s2(const struct interp_axes *x,
 				      const double *way, double v_mm_s);
 
@@ -71,8 +71,8 @@ struct interp_range interp_axes_mm_s3(const struct interp_axes *x,
  * turns from the way @before to the way @behind.
  *
  * Each axis changes its speed and its acceleration within @corner_mm, and
- * @along, a bit for each column that makes the length, turn as an arc that is so
- * far from the node.
+ * @along, a bit for each column that makes the length, turn as an arc that is
+ * so far from the node.
  */
 double interp_axes_corner_mm_s(const struct interp_axes *x,
 			       const double *before, const double *behind,
