@@ -30,8 +30,8 @@ struct interp_speeds {
 	size_t n;			/* 2 or more */
 };
 
-/** interp_speeds_at() - the state at the time @t_s, which is cut to the table's.
- *  Its place is that along the path. */
+/** interp_speeds_at() - the state at the time @t_s, which is cut to the
+ *  table's.  Its place is that along the path. */
 struct interp_scurve_state interp_speeds_at(const struct interp_speeds *k,
 					    double t_s);
 
