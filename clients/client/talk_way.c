@@ -46,6 +46,13 @@ static int connect_local(struct talk_way *w)
 	return err;
 }
 
+const char *talk_default_url(void)
+{
+	const char *url = getenv("LCM_DEFAULT_URL");
+
+	return url && *url ? url : TALK_URL;
+}
+
 /* @named: the user chose the URL. */
 static int join(struct talk_way *w, const char *url, bool named, char *said)
 {
@@ -79,7 +86,7 @@ static int find(struct talk_way *w, const char *machine, const char *url,
 
 	if (err == 0)
 		err = connect_local(w);
-	return err < 0 ? join(w, url ? url : TALK_URL, url, said) : 0;
+	return err < 0 ? join(w, url ? url : talk_default_url(), url, said) : 0;
 }
 
 int talk_way_open(struct talk_way **ret, const char *machine, const char *url,

@@ -16,7 +16,7 @@ from pathlib import Path
 from .keys import is_trusted
 from .udpm import PACKET, Udpm, join, split
 
-URL = "udpm://239.255.76.67:7667?ttl=0"
+URL = os.environ.get("LCM_DEFAULT_URL") or "udpm://239.255.76.67:7667?ttl=0"
 AGAIN_S = 0.1
 BUFFER = 4 << 20
 # As common/places.h: anybody may make a file in the second.
