@@ -83,6 +83,7 @@ def log_of(m):
     return (m.folder / "edmd-jobs.log").read_text()
 
 
+@pytest.mark.needs("a network of its own")
 def test_without_any_network_all_of_one_host_goes_on(lonely):
     """No multicast, no route, no loopback: submit, watch, record, stop."""
     m = lonely
@@ -105,6 +106,7 @@ def test_without_any_network_all_of_one_host_goes_on(lonely):
     assert len(said) == 1 and "ip route add 224.0.0.0/4" in said[0], said
 
 
+@pytest.mark.needs("a network of its own")
 def test_the_python_package_needs_no_network_either(lonely):
     code = ("import edm, sys; m = edm.Client(sys.argv[1], timeout=20); "
             "print(m.submit(b'G1 X1 F600\\nM30\\n', 'a.ngc').id, "
@@ -118,6 +120,7 @@ def test_the_python_package_needs_no_network_either(lonely):
     assert len(p.stdout.split()) == 2
 
 
+@pytest.mark.needs("a network of its own")
 def test_multicast_that_comes_later_is_joined(tmp_path):
     """As at boot, when the network is up later than the service."""
     m = rig.Machine(tmp_path)

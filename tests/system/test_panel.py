@@ -483,10 +483,8 @@ def test_a_program_that_explodes_is_ended_in_its_own_process(p, me):
     assert resident_kb(p) < 100000
 
 
+@pytest.mark.needs("another user")
 def test_another_user_of_the_host_only_looks_on(p):
-    """Root of this test may become nobody; who may not, cannot show it."""
-    if os.getuid() != 0:
-        pytest.skip("needs root, to be another user")
     code = ("import http.client,json,sys; c=http.client.HTTPConnection("
             f"'127.0.0.1',{p.port}); c.request('GET','/api/session'); "
             "print(json.load(c.getresponse())['role'])")
@@ -496,10 +494,9 @@ def test_another_user_of_the_host_only_looks_on(p):
     assert done.stdout.strip() == "viewer", done.stderr
 
 
+@pytest.mark.needs("another user")
 def test_a_cookie_serves_its_own_user_alone(p, me):
     """A browser sends it to every port of the host."""
-    if os.getuid() != 0:
-        pytest.skip("needs root, to be another user")
     code = ("import http.client,json,sys; c=http.client.HTTPConnection("
             f"'127.0.0.1',{p.port}); c.request('GET','/api/session',"
             f"headers={{'Cookie': {me.cookie!r}}}); "
@@ -526,10 +523,9 @@ while got := s.recv(4096):
 """
 
 
+@pytest.mark.needs("another user")
 def test_another_user_on_the_port_of_an_operator_only_looks_on(p):
     """Root has connections to elsewhere from that very port."""
-    if os.getuid() != 0:
-        pytest.skip("needs root, to be another user")
     for _ in range(3):
         held, own = [], panel.free_port()
         for _ in range(12):

@@ -36,7 +36,7 @@ class Failing(rig.Machine):
     def _start(self, program, *args):
         env = dict(os.environ)
         if program == "edmd-jobs":
-            env |= {"LD_PRELOAD": str(self.shim),
+            env |= {"LD_PRELOAD": rig.preload(self.shim),
                     "EDM_DISK": str(self.store),
                     "EDM_DISK_ERRNO": str(self.errno)}
         with open(self.folder / f"{program}.log", "ab") as log:
