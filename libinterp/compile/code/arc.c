@@ -196,7 +196,7 @@ static int go_round(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES])
 {
 	const struct interp_build_contour bottom = { .arc = false };
-	int err = nc_word(r, end_mm, r->block.code[NC_MOTION]->value == 0);
+	int err = nc_word(r, false, r->block.code[NC_MOTION]->value == 0);
 
 	if (!err)
 		err = nc_room(r);
@@ -221,13 +221,11 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 	nc_target(r, end_mm);
 	err = centre(r, p, end_mm, &arc);
 	if (!err)
-		err = nc_word(r, end_mm, false);
+		err = nc_word(r, false, false);
 	if (!err)
 		err = nc_room(r);
 	if (err)
 		return err;
-	/* A whole circle ends where it began. */
-	r->word.feed_mm_s = r->feed_mm_s;
 	r->moved |= NC_BIT(p->a) | NC_BIT(p->b);
 	if (r->tool.on)
 		return nc_tip_arc(r, end_mm, &arc);
