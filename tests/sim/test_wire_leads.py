@@ -124,6 +124,19 @@ def test_leads_from_odd_places(hole, lead, end, found):
     assert not found or found in r.stderr.decode(), r.stderr
 
 
+def test_what_lies_between_two_leads_is_not_left_out_unsaid(plain):
+    """The lead out crosses the lead in, and the wire fits nowhere between."""
+    text = """G20 G90 G91.1 F7.874 H1=0.00591 H2=0.00787
+G41 D1 G3 X-0.02706 Y-0.08808 I0.03051 J-0.05757
+G2 X-0.02706 Y-0.08808 I-0.01276 J0.00514
+G3 X-0.01280 Y-0.07160 I0.01736 J-0.00061
+G42 D2 G2 X-0.01280 Y-0.07160 I-0.01550 J0.08561
+M2
+"""
+    ways, said = ways_of(plain, text)
+    assert not ways and "no room for the wire between" in said
+
+
 # -- Leads of any kind --------------------------------------------------------
 
 LEAD_MM = 2.5 * UM      # its ends are rounded to pulses, and so are centres
