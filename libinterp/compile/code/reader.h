@@ -519,8 +519,9 @@ int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
  */
 void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES]);
 
-/** nc_word() - prepare r->word for a motion.  @turns: only rotary axes move, so F
- *  is in degrees per minute, and inches do not apply to it. */
+/** nc_word() - prepare r->word for a motion.
+ *  @turns: only rotary axes move, so F is in degrees per minute, and inches do
+ *  not apply to it. */
 int nc_word(struct nc_reader *r, bool turns, bool rapid);
 
 /** nc_refuse_room() - there are too many segments. */

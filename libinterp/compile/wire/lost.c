@@ -337,7 +337,7 @@ static bool is_plain(const struct between *k)
 
 bool lost_is(const struct track_work *w, const struct track_jump *j)
 {
-	/* But beside a lead, the beginning or end of its piece may be missing. */
+	/* But beside a lead, an end of its piece may be missing. */
 	const bool is_same = w->elem[j->e].piece >= 0 &&
 			     w->elem[j->e].piece == w->elem[j->f].piece;
 	struct between k;
