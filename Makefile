@@ -336,6 +336,9 @@ PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c \
 
 $(B)/unit/test_plan_core $(B)/unit/test_plan_bounds $(B)/unit/test_plan_near: $(PLAN_CORE)
 
+$(B)/unit/test_plan_lp: $(call obj,clients/plan/lp.c)
+$(B)/unit/test_plan_lp: UNIT_LIBS = -lglpk
+
 $(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
 $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
 

@@ -9,11 +9,11 @@
  */
 #include "free.h"
 
+#include "lp.h"
 #include "near_set.h"
 
 #include <errno.h>
 #include <float.h>
-#include <glpk.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -226,23 +226,9 @@ static void add_pairs(struct lp *l, struct free_way *w)
 	}
 }
 
-static bool solve(struct lp *l)
-{
-	glp_smcp how;
-
-	glp_init_smcp(&how);
-	how.msg_lev = GLP_MSG_OFF;
-	how.tm_lim = 20000;
-	how.presolve = GLP_ON;
-	return glp_simplex(l->p, &how) == 0 &&
-	       (glp_get_status(l->p) == GLP_OPT ||
-		glp_get_status(l->p) == GLP_FEAS);
-}
-
 static void begin(struct lp *l, struct free_way *w)
 {
 	*l = (struct lp) { .p = glp_create_prob(), .w = w };
-	glp_term_out(GLP_OFF);
 	job_axes_find(w->j, w->q[0], w->q[w->n - 1], &l->axes);
 	add_columns(l);
 	add_pairs(l, w);
@@ -267,7 +253,7 @@ static double step(struct lp *l, struct free_way *w, double room_mm)
 
 	set_room(l, room_mm);
 	w->programs++;
-	if (!solve(l))
+	if (!lp_solve(l->p, bar_interrupted))
 		return 0;
 	move_nodes(l, w);
 	w->least_mm = try_way(w, was.least_mm);

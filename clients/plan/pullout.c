@@ -11,11 +11,11 @@
 
 #include "air.h"
 #include "check.h"
+#include "lp.h"
 #include "near_set.h"
 
 #include <errno.h>
 #include <float.h>
-#include <glpk.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
@@ -124,14 +124,12 @@ static bool step_to(const struct pull *p, double room_mm,
 	struct near_pair pair = p->nearest;
 	struct pose pose;
 	double mm, keep;
-	glp_smcp how;
 	bool ok;
 
 	motion_pose(&p->j->motion, p->q, &pose);
 	mm = near_distance(&p->j->bodies, &pose, &pair);
 	near_set_collect(&p->j->bodies, &pose, mm + 1.0, &set);
 	keep = fmin(p->keep_mm + 0.01, mm);
-	glp_term_out(GLP_OFF);
 	glp_set_obj_dir(lp, GLP_MAX);
 	add_limits(p, lp, room_mm);
 	for (uint32_t a = 0; a < p->axes.n; a++)
@@ -141,10 +139,7 @@ static bool step_to(const struct pull *p, double room_mm,
 	glp_set_col_bnds(lp, (int)p->axes.n + 1, GLP_DB, keep,
 			 keep + MIDDLE_MM);
 	add_pairs(p, lp, &set);
-	glp_init_smcp(&how);
-	how.msg_lev = GLP_MSG_OFF;
-	how.presolve = GLP_ON;
-	ok = glp_simplex(lp, &how) == 0 && glp_get_status(lp) == GLP_OPT;
+	ok = lp_solve(lp, bar_interrupted);
 	memcpy(to, p->q, sizeof(p->q));
 	for (uint32_t a = 0; a < p->axes.n && ok; a++)
 		to[p->axes.axis[a]] += glp_get_col_prim(lp, (int)a + 1);
