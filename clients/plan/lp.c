@@ -9,7 +9,7 @@
 #define MISS		1e-6		/* a row may be missed by that, mm */
 #define ITERATIONS	200		/* until it is asked whether to stop */
 #define ROUNDS		500		/* of these */
-#define ROUND_MS	10000		/* one that is longer has lost its way */
+#define ROUND_MS	10000		/* a longer one has lost its way */
 
 /* Room for a row, as GLPK counts: from 1 on. */
 struct row {

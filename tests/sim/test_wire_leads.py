@@ -126,7 +126,8 @@ def test_leads_from_odd_places(hole, lead, end, found):
 
 def test_what_lies_between_two_leads_is_not_left_out_unsaid(plain):
     """The lead out crosses the lead in, and the wire fits nowhere between."""
-    text = """G20 G90 G91.1 F7.874 H1=0.00591 H2=0.00787
+    text = """G20 G90 G91.1 F7.874
+H1=0.00591 H2=0.00787
 G41 D1 G3 X-0.02706 Y-0.08808 I0.03051 J-0.05757
 G2 X-0.02706 Y-0.08808 I-0.01276 J0.00514
 G3 X-0.01280 Y-0.07160 I0.01736 J-0.00061

@@ -13,8 +13,8 @@
 
 #include "lp.h"
 
-/* A step of a rib through a slot.  GLPK's presolver divides by roundings such
- * as those of its first row, calls 4.31 the best, and misses a row by 1.7 mm. */
+/* A step of a rib through a slot.  GLPK's presolver divides by roundings like
+ * those of its first row, calls 4.31 the best, and misses a row by 1.7 mm. */
 static const char with_dust[] =
 	"Maximize\n"
 	" obj: + 0.346176293235637 x_1 + 0.0429391551357388 x_2\n"
