@@ -156,6 +156,16 @@ static void comp_of(const struct machine_config *c, struct comp_config *ret)
 	ret->mapped = !interp_errormap_is_empty(&c->geometry);
 }
 
+static void resync_of(const struct machine_config *c, struct resync_config *ret)
+{
+	const bool drives = config_machine_is(c, MACHINE_DRIVES);
+	const double max_mm = drives ? c->can402.resync_mm : c->gpio.resync_mm;
+
+	ret->v_mm_s = drives ? c->can402.resync_mm_s : c->gpio.resync_mm_s;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret->max[i] = (int32_t)(max_mm / c->axes.axis[i].pulse_mm);
+}
+
 void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 {
 	*ret = (struct cycle_config) {
@@ -192,5 +202,6 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 		manual_of(c, i, &ret->axis[i]);
 	}
 	comp_of(c, &ret->comp);
+	resync_of(c, &ret->resync);
 	config_contouring(c, &ret->contouring);
 }

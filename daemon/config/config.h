@@ -211,6 +211,7 @@ struct config_gpio {
 	int pull;			/* of inputs: 0 as is, 1 up, 2 down, 3
 					 * no */
 	double high_cycles, low_cycles;	/* of a step */
+	double high_us, low_us, setup_us;	/* at the least */
 	double dir_setup_cycles, dir_hold_cycles;
 	char adc[64], adc_trigger[64];	/* of industrial I/O; "none" */
 	double adc_channel, adc_ratio;	/* V at the gap for a V at the input */

@@ -43,7 +43,8 @@ SAME(SHM_ELSEWHERE, ANSWER_ELSEWHERE);
 SAME(SHM_NOT_UP, ANSWER_NOT_UP);
 SAME(SHM_LOCKED, ANSWER_LOCKED);
 SAME(SHM_STILL_THERE, ANSWER_STILL_THERE);
-SAME(SHM_STILL_THERE + 1, CYCLE_NANSWERS);
+SAME(SHM_NO_POWER, ANSWER_NO_POWER);
+SAME(SHM_NO_POWER + 1, CYCLE_NANSWERS);
 SAME(SHM_OUTCOME_NONE, OUTCOME_NONE);
 SAME(SHM_OUTCOME_DONE, OUTCOME_DONE);
 SAME(SHM_OUTCOME_FAULT, OUTCOME_FAULT);
@@ -239,6 +240,8 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 
 	axis_state_get(&l->cycle, &at);
 	memcpy(s->drive, at.drive, sizeof(s->drive));
+	memcpy(s->off, at.off, sizeof(s->off));
+	s->sure_mm = l->cycle.resync.sure_mm;
 	memcpy(s->home_shift, at.shift, sizeof(s->home_shift));
 	memcpy(s->toward, at.toward, sizeof(s->toward));
 	memcpy(s->limit_side, at.limit.side, sizeof(s->limit_side));

@@ -245,8 +245,6 @@ static void encoder_configure(struct gpio *g, const struct machine_config *c,
 		.pulses = (int64_t)c->drive[axis].encoder_pulses,
 		.following_max = (int32_t)(k->following_mm / mm + 0.5),
 		.lag_cycles = k->following_s / period_s,
-		.resync_max = (int32_t)(k->resync_mm / mm + 0.5),
-		.slew = k->resync_mm_s / mm * period_s,
 	};
 
 	encoder_init(&g->encoder[axis], &e);
@@ -328,6 +326,9 @@ static struct pulser_config pulser_of(const struct config_gpio *k)
 		.dir_setup = (uint32_t)k->dir_setup_cycles,
 		.dir_hold = (uint32_t)k->dir_hold_cycles,
 		.quadrature = k->signal == 1,
+		.high_ns = (int64_t)(k->high_us * 1e3),
+		.low_ns = (int64_t)(k->low_us * 1e3),
+		.setup_ns = (int64_t)(k->setup_us * 1e3),
 	};
 }
 

@@ -78,8 +78,14 @@ struct io_inputs {
 	bool starting;			/* not up yet: nothing can begin */
 	uint32_t unplaced;		/* bit per axis: it lost its place in
 					 * this period */
-	bool axes_off;			/* not under power, or not yet on their
-					 * places: no motion can begin */
+	bool powerless;			/* an axis cannot have power now: no
+					 * motion may be asked for */
+	bool axes_off;			/* not under power: no motion can begin.
+					 * Targets are not followed, and where
+					 * these end, the axes stand ... */
+	int32_t stands_at[IO_NAXES];	/* ... here: pulses */
+	int32_t ran_on[IO_NAXES];	/* pulses that they may have run on by
+					 * themselves when they were stopped */
 	struct io_plc plc;
 	int32_t actual[IO_NAXES];	/* pulses, measured or last written */
 };

@@ -97,6 +97,9 @@ static const char *refusal(int code)
 		[SHM_LOCKED] = "nothing may move now: the door is open, the "
 			       "gap cannot be read, or the PLC is not there, "
 			       "holds, or has no permit",
+		[SHM_NO_POWER] = "an axis cannot have power: safe torque "
+				 "off, its supply or its enable input; "
+				 "repair that, then ask again",
 		[SHM_STILL_THERE] = "what caused the fault is still there; "
 				    "edmctl alarms says what clears it",
 	};

@@ -236,9 +236,9 @@ static bool may_spark(const struct cycle *c)
 /* Does a command move the axes?  Then their compensation may move them too. */
 static bool moves_by_will(const struct cycle *c)
 {
-	return !c->axes.awaited &&
+	return !axes_awaits(&c->axes) &&
 	       (state_duty[c->state].running || c->hold.moving ||
-		cycle_is_manual(c));
+		c->axes.phase == AXES_BACK || cycle_is_manual(c));
 }
 
 static void give(struct cycle *c, struct io_outputs *out)
@@ -267,6 +267,7 @@ static void give(struct cycle *c, struct io_outputs *out)
 	}, out->target);
 	for (int i = 0; i < INTERP_NAXES && c->contouring.on; i++)
 		out->target[i] += c->contouring.added[i];
+	resync_apply(c, out->target);
 	out->pulse[INTERP_TECH_OFF_US] = arcing_off_us(c);
 	c->out.reset = false;
 }
@@ -282,17 +283,12 @@ static void go_manually(struct cycle *c, const struct io_inputs *in)
 /* The machine is held until the axes have power and stand on their places. */
 static bool may_move(struct cycle *c)
 {
-	enum axes_await a;
-
 	/* A jog or homing that ends before the axes have power needs none. */
-	if (c->axes.awaited && cycle_is_manual(c) && manual_ends(c))
+	if (axes_awaits(&c->axes) && cycle_is_manual(c) && manual_ends(c))
 		axes_forget(c);
-	a = axes_await(c);
-	if (a == AXES_START)
-		cycle_set_off(c);
-	if (c->axes.start)
+	if (c->axes.then == cycle_start)
 		c->totals.cycles++;
-	return a != AXES_AWAITED;
+	return axes_await(c);
 }
 
 /* Choose the state by the gap and the place, unless a guard has found a

@@ -133,6 +133,8 @@ struct shm_snapshot {
 	 * at pulse 0, if they are known; the direction in which each axis moved
 	 * last. */
 	int32_t drive[SHM_NAXES], home_shift[SHM_NAXES], origin[SHM_NAXES];
+	int32_t off[SHM_NAXES];		/* they stand beside that, pulses */
+	double sure_mm;			/* the place where they last did not */
 	int8_t toward[SHM_NAXES];
 	int8_t limit_side[SHM_NAXES];	/* of the switches in `limit` */
 	double axes_c;			/* as a PLC told it; 0: not told */
@@ -294,6 +296,7 @@ enum shm_answer {
 	SHM_DONE, SHM_NO_PROGRAM, SHM_WRONG_STATE, SHM_BAD_ARGUMENT,
 	SHM_NOT_HOMED, SHM_AT_LIMIT, SHM_BEYOND, SHM_NO_NODE, SHM_NOT_PASSED,
 	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED, SHM_STILL_THERE,
+	SHM_NO_POWER,
 	/* Not of the cycle: */
 	SHM_LATE = 50,			/* came after its until_ns: not done */
 	SHM_CUT_SHORT,			/* edmd ended while it did it; the place

@@ -179,6 +179,7 @@ static inline void step(struct rig *r, double gap_v)
 	memcpy(r->path_before, r->c.out.target, sizeof(r->path_before));
 	r->was = r->c.state;
 	r->in.gap_v = gap_v;
+	memcpy(r->in.stands_at, r->out.target, sizeof(r->out.target));
 	cycle_step(&r->c, &r->in, &r->out);
 	check_always(r);
 }

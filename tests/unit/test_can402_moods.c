@@ -336,6 +336,8 @@ static void operate(struct rig *r)
 	for (int i = 0; i < NDRIVES && !r->begun && !r->in.starting; i++)
 		r->p[i].gone = false;
 	r->begun = r->begun || !r->in.starting;
+	if (r->in.axes_off && !r->in.starting)
+		memcpy(r->out.target, r->in.stands_at, sizeof(r->out.target));
 	r->out.reset = false;
 	if (r->in.trouble != IO_WELL) {
 		r->out.enable = false;
