@@ -6,6 +6,7 @@
 
 #include "clocks.h"
 #include "jobs_log.h"
+#include "regular.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -161,7 +162,7 @@ static int file_make(int fd)
 static bool takes_sectors(const char *path)
 {
 	_Alignas(CHECKPOINT_BLOCK) static uint8_t sector[CHECKPOINT_SECTOR];
-	const int fd = open(path, O_RDONLY | O_DIRECT | O_CLOEXEC);
+	const int fd = regular_open(path, O_RDONLY | O_DIRECT, 0);
 	bool takes = false;
 
 	if (fd >= 0) {
@@ -177,7 +178,7 @@ static void look_only(const char *path, const char *machine,
 		      struct checkpoint *ret)
 {
 	_Alignas(CHECKPOINT_BLOCK) static union checkpoint_block block[4];
-	const int fd = open(path, O_RDONLY | O_CLOEXEC);
+	const int fd = regular_open(path, O_RDONLY, 0);
 	struct checkpoint_head head;
 
 	if (fd < 0)
@@ -189,18 +190,18 @@ static void look_only(const char *path, const char *machine,
 
 static int file_open(struct checkpoint_file *f, const char *path)
 {
-	const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+	const int fd = regular_open(path, O_RDWR | O_CREAT, 0600);
 	int err;
 
 	if (fd < 0)
-		return -errno;
+		return fd;
 	/* Who may read a file may lock it.  A file of an earlier version may be
 	 * open to the group. */
 	err = fchmod(fd, 0600) < 0 ? -errno : file_make(fd);
 	f->direct = takes_sectors(path);
 	if (err == 0 && f->direct) {
-		f->fd = open(path, O_RDWR | O_DIRECT | O_CLOEXEC);
-		err = f->fd < 0 ? -errno : 0;
+		f->fd = regular_open(path, O_RDWR | O_DIRECT, 0);
+		err = f->fd < 0 ? f->fd : 0;
 		close(fd);
 	} else {
 		f->fd = fd;

@@ -108,7 +108,8 @@ const char *store_state_name(enum job_state s);
  * store_open() - open or make the database.
  *
  * A disk that is full, read-only or fails is no error here: see store_why().
- * Return: 0; -EALREADY if another service has it; -EPROTO if a newer version
+ * Return: 0; -EALREADY if another service has it; -ELOOP if one of its files is
+ * a link or no regular file, which is then logged; -EPROTO if a newer version
  * made it; -errno if @dir cannot be used.
  */
 int store_open(struct store **ret, const char *dir, const char *machine);

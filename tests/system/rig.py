@@ -419,6 +419,16 @@ class Machine:
             pathlib.Path("/dev/shm", name).unlink()
         return left
 
+    def forget_store(self):
+        """Begin with an empty folder: also with new keys, for a new client."""
+        for path in self.store.iterdir():
+            path.unlink()
+        self.client = Client(self.name)
+        return self.client
+
+    def log(self, program):
+        return (self.folder / f"{program}.log").read_text()
+
     def ctl(self, *args, timeout=120, program=BUILD / "edmctl", **more):
         """On a busy host services that run answer late, and what edmd did not
         take in time was not done: it is asked again."""
