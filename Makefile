@@ -147,7 +147,7 @@ INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE
 INC_panel	= -Iclients/panel -Icommon $(WORDS_H) $(INC_values) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_plan	= -Iclients/plan -Icommon $(INC_config) $(INC_compiling)
-INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan -Iclients/panel
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
 part = $(if $(filter common,$(firstword $(subst /, ,$1))),common,$(word 2,$(subst /, ,$1)))
@@ -324,7 +324,7 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 	$(call link,-lddsc -ljansson -lm)
 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(VALUES) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
-	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
+	$(call link,-lwebsockets -lssl -linih -llcm -lsodium -ljansson -lsystemd -lm)
 
 $(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
 	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
@@ -359,6 +359,10 @@ $(B)/unit/test_store $(B)/unit/test_store_electrode $(B)/unit/test_store_turn: U
 
 $(B)/unit/test_checkpoint: $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/checkpoint.c daemon/jobs/checkpoint_block.c) daemon/jobs/jobs_log.c)
 $(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
+
+$(B)/unit/test_share: $(call obj,clients/panel/share.c)
+$(B)/unit/test_frames: $(call obj,clients/panel/frames.c)
+$(B)/unit/test_frames: UNIT_LIBS = -lssl
 
 # The sockets and the lines of an encoder are the test's own.
 $(B)/unit/test_can_queue: UNIT_LIBS = -Wl,--wrap=can_socket_open
@@ -472,6 +476,7 @@ VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd can402 torture)
 # A browser is driven in the tests' own process; LCM has one for itself.  They run
 # alone: a browser needs both cores at times.
 PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_login.py \
+	tests/system/test_panel_crowd.py \
 	tests/system/test_panel_page.py
 
 # For somebody who changes code: most of what goes wrong, in 90 s.

@@ -525,6 +525,18 @@ int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
 	return 0;
 }
 
+void talk_forget(struct talk *t, const void *arg)
+{
+	for (int i = 0; i < TALK_QUESTIONS; i++) {
+		struct question *q = &t->question[i];
+
+		if (!q->seq || q->arg_fn != arg)
+			continue;
+		q->fn = NULL;
+		question_end(q, 0, NULL);
+	}
+}
+
 int talk_answer_copy(struct talk_answer *ret, const struct talk_ack *a)
 {
 	*ret = (struct talk_answer) {
