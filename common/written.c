@@ -12,7 +12,7 @@ static int why_failed(FILE *f)
 	static const char block[4096];
 
 	errno = 0;
-	if (write(fileno(f), block, sizeof(block)) == (ssize_t)sizeof(block))
+	if (write(f == stdout ? STDOUT_FILENO : fileno(f), block, sizeof(block)) == (ssize_t)sizeof(block))
 		return -EIO;
 	return errno ? -errno : -ENOSPC;
 }

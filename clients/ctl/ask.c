@@ -5,6 +5,7 @@
 #include "ctl.h"
 #include "heard.h"
 #include "history.h"
+#include "standard.h"
 
 #include <errno.h>
 #include <math.h>
@@ -461,10 +462,9 @@ static void tell_progress(double since_s, size_t jobs, bool end)
 {
 	if (talk_now_s() - since_s < 1 || !isatty(STDERR_FILENO))
 		return;
-	if (end)
-		fputs("\r\033[K", stderr);
-	else
-		fprintf(stderr, "\r%zu jobs", jobs);
+	standard_control(stderr, end ? "\r\033[K" : "\r");
+	if (!end)
+		fprintf(stderr, "%zu jobs", jobs);
 }
 
 /*

@@ -9,6 +9,7 @@
 #include "config.h"
 #include "interp/build.h"
 #include "shm.h"
+#include "standard.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -219,6 +220,7 @@ int work_run(const struct work *w)
 	static struct machine_config c;
 	struct interp_diag d = { .line = 0 };
 
+	standard_raw();
 	if (strcmp(w->what, "verify") == 0)
 		return work_verify();
 	if (config_read(&c, w->config, &d) < 0)

@@ -33,8 +33,8 @@ void queue_recount(struct jobs *j)
 
 static void set_waiting(struct jobs *j, bool waiting)
 {
-	/* Nothing begins until a person has seen where the axes stand. */
-	waiting = waiting || j->elsewhere;
+	/* Nothing begins until a person has seen what is not certain. */
+	waiting = waiting || j->unseen;
 	if (j->queue.waiting == waiting)
 		return;
 	j->queue.waiting = waiting;

@@ -104,6 +104,10 @@ enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY, STORE_ALARMS,
 /** store_state_name() - "queued", ... */
 const char *store_state_name(enum job_state s);
 
+/* Of the number "elsewhere": a store was mended, and nobody has said yet that
+ * its loss is known.  The other bits are axes. */
+#define STORE_UNSEEN	(UINT32_C(1) << 31)
+
 /**
  * store_open() - open or make the database.
  *

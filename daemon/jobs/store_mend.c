@@ -146,6 +146,8 @@ static const char settle[] =
 	" (SELECT 1 FROM sqlite_sequence WHERE name='job');"
 	"UPDATE sqlite_sequence SET seq=seq+1000 WHERE name='job';"
 	"INSERT OR REPLACE INTO number VALUES('waiting', 1);"
+	"INSERT OR REPLACE INTO number VALUES('elsewhere', 0x80000000 | "
+	"ifnull((SELECT value FROM number WHERE key='elsewhere'), 0));"
 	"DELETE FROM text WHERE n NOT IN (SELECT n FROM job);"
 	"UPDATE job SET state='stopped', loaded=0, ended_us=unixepoch()*1000000,"
 	" reason="

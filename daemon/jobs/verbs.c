@@ -556,7 +556,7 @@ static void start_nothing(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	const char *why = queue_unready(j);
 
-	if (!j->elsewhere)
+	if (!j->unseen)
 		why = "no job in the queue; submit one";
 	if (why) {
 		verbs_answer(j, c, REFUSED, why);
@@ -564,8 +564,8 @@ static void start_nothing(struct jobs *j, const struct jobs_lcm_command *c)
 	}
 	interrupt_answered(j);
 	queue_go(j);
-	verbs_answer(j, c, 0, "the axes count as standing where they are "
-		     "shown; no job waits");
+	verbs_answer(j, c, 0, "what was not certain counts as seen, and the "
+		     "axes as standing where they are shown; no job waits");
 }
 
 static void verb_start(struct jobs *j, const struct verb *v,
