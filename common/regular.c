@@ -9,8 +9,8 @@
 
 int regular_open(const char *path, int flags, mode_t mode)
 {
-	/* A fifo that nobody reads, and a folder, refuse by themselves.  Nothing
-	 * is cut off before it is known what it is. */
+	/* A fifo that nobody reads, and a folder, refuse by themselves.
+	 * Nothing is cut off before it is known what it is. */
 	const int fd = open(path, (flags & ~O_TRUNC) | O_NOFOLLOW |
 			    O_NONBLOCK | O_NOCTTY | O_CLOEXEC, mode);
 	struct stat st;

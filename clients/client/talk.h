@@ -167,7 +167,7 @@ int talk_answer_copy(struct talk_answer *ret, const struct talk_ack *a);
 int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
 	      talk_answer_fn fn, void *arg);
 
-/** talk_forget() - drop what was asked with @arg; its function is not called. */
+/** talk_forget() - drop what was asked with @arg; nothing is called back. */
 void talk_forget(struct talk *t, const void *arg);
 
 /** talk_on_event() - set the function that gets every EVENT; NULL: none. */

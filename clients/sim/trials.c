@@ -23,8 +23,8 @@ void trials_tell(const struct trials *t, unsigned int used, const char *best)
 		return;
 	if (t->terminal)
 		standard_control(stderr, "\r");
-	fprintf(stderr, "%4u of %u trials, best %s; %.0f s left%s", used, t->budget, best, left_s,
-		t->terminal ? "   " : "\n");
+	fprintf(stderr, "%4u of %u trials, best %s; %.0f s left%s", used,
+		t->budget, best, left_s, t->terminal ? "   " : "\n");
 }
 
 void trials_end(const struct trials *t)

@@ -182,8 +182,8 @@ static void check_ended(const struct item *t, const int had[PEERS])
 		assert_true(had[ended->peer] > had[t->peer] + 1);
 }
 
-/* A refusal is right if nobody of a lower rank holds one, and nobody of the same
- * rank so many more. */
+/* A refusal is right if nobody of a lower rank holds one, and nobody of the
+ * same rank so many more. */
 static void check_refused(const struct item *t, const int had[PEERS])
 {
 	for (int i = 0; i < ITEMS; i++) {

@@ -21,7 +21,7 @@ static const char *const foreign[] = {
 	"\xc3", "\xe6\x94", "\xf0\x9f\x99", "\xff", "\x80", "\x7f", "\xc0\xaf",
 };
 
-/* In pieces of any length to stdout, which is a file.  Return: what is in it. */
+/* In pieces of any length to stdout, which is a file.  Return: its bytes. */
 static size_t print(const char *text, size_t n, char *ret)
 {
 	char path[] = "/tmp/edmd-standard.XXXXXX";
