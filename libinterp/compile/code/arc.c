@@ -1,7 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* arc.c - G2 and G3: finds the centre from I J K or from R */
+/*
+ * arc.c - G2 and G3: finds the centre from I J K or from R
+ *
+ * A program writes an arc by places that are rounded to their last digit q.  So
+ * each of them is up to q / sqrt(2) beside the place that was meant, and only
+ * by that may the arc fail to come out: start, end and centre of the radii, or
+ * R and half the way from start to end.  What is farther off was not meant so,
+ * and is refused.  How fine the machine's pulses are has no part in it.
+ */
+#include "code/macro.h"
+#include "code/number.h"
 #include "code/reader.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -17,7 +28,89 @@ const struct nc_plane nc_planes[3] = {
 	  "G19 (YZ)", "J and K, or R" },
 };
 
+/* -- Last digits ---------------------------------------------------------- */
+
+/* X10.5 and X10.500 say the same, so zeros at the end are no digits: one of the
+ * two words of a place has others nearly always.  Nobody rounds an arc to less
+ * than these. */
+#define DECIMALS_MM	2
+#define DECIMALS_INCH	3
+
+/* How many decimals the word at @at has.  What macros computed has those that a
+ * control keeps; so has a length without a point, where it counts in them. */
+static int decimals_of(const struct nc_reader *r, const uint8_t *at)
+{
+	const int kept = r->unit_mm > 1 ? 4 : 3;
+	const uint8_t *p = at + 1;
+	int n = 0;
+
+	if (nc_is_computed(r, p))
+		return kept;
+	while (p < r->stop && *p != '.' &&
+	       (nc_classes[*p] == NC_NUMERIC || nc_classes[*p] == NC_BLANK))
+		p++;
+	if (p == r->stop || *p != '.')
+		return r->d->point == NC_POINT_LAST ? kept : 0;
+	for (int k = 1; ++p < r->stop && isdigit(*p); k++)
+		n = *p == '0' ? n : k;
+	return n;
+}
+
+/* The last digit of those words of the line that are in @words, in mm. */
+static double digit_mm(const struct nc_reader *r, uint32_t words)
+{
+	int most = r->unit_mm > 1 ? DECIMALS_INCH : DECIMALS_MM;
+
+	for (words &= r->block.words; words; words &= words - 1) {
+		const int n = decimals_of(r, r->block.at[__builtin_ctz(words)]);
+
+		most = n > most ? n : most;
+	}
+	return r->unit_mm / nc_pow10[most < NC_POW10_MAX ? most : NC_POW10_MAX];
+}
+
+/* A place that is written to @digit_mm may be so far beside the one meant. */
+static double rounded_mm(double digit_mm)
+{
+	return digit_mm * M_SQRT1_2;
+}
+
+/* Ends of an arc in its plane, and its centre. */
+struct ring {
+	double from_mm[2], to_mm[2], centre_mm[2];
+	double end_digit_mm, centre_digit_mm;
+	const char *name;
+};
+
+/*
+ * Start and end are each at their own place beside the circle.  A centre that
+ * is off makes the one radius longer and, on half a turn, the other shorter.
+ */
+static int check_ring(struct nc_reader *r, const struct ring *g,
+		      const double end_mm[INTERP_NAXES])
+{
+	const double r0 = hypot(g->from_mm[0] - g->centre_mm[0],
+				g->from_mm[1] - g->centre_mm[1]);
+	const double r1 = hypot(g->to_mm[0] - g->centre_mm[0],
+				g->to_mm[1] - g->centre_mm[1]);
+	const double most = 2 * rounded_mm(g->end_digit_mm) +
+			    2 * rounded_mm(g->centre_digit_mm);
+	char wanted[96];
+
+	if (fabs(r1 - r0) <= most + NOTHING_MM)
+		return 0;
+	snprintf(wanted, sizeof(wanted), "radii that agree within %.3g mm, as "
+		 "its last digits can say them", most);
+	return nc_placed(r, nc_refuse_at(r, r->line, wanted, "the %s starts "
+					 "%.7g mm from its centre and ends "
+					 "%.7g mm from it", g->name, r0, r1),
+			 end_mm);
+}
+
+/* -- The centre ----------------------------------------------------------- */
+
 static int by_centre(struct nc_reader *r, const struct nc_plane *p,
+		     const double end_mm[INTERP_NAXES],
 		     struct interp_build_arc *arc)
 {
 	const struct nc_block *b = &r->block;
@@ -50,7 +143,14 @@ static int by_centre(struct nc_reader *r, const struct nc_plane *p,
 		return nc_refuse(r, b->at[has_a ? p->ca : p->cb],
 				 "a centre away from the start",
 				 "an arc of radius 0: its centre is its start");
-	return 0;
+	return check_ring(r, &(struct ring) {
+		.name = "arc",
+		.from_mm = { here[p->a], here[p->b] },
+		.to_mm = { end_mm[p->a], end_mm[p->b] },
+		.centre_mm = { arc->centre_a_mm, arc->centre_b_mm },
+		.end_digit_mm = digit_mm(r, NC_BIT(p->a) | NC_BIT(p->b)),
+		.centre_digit_mm = digit_mm(r, NC_BIT(p->ca) | NC_BIT(p->cb)),
+	}, end_mm);
 }
 
 static int refuse_radius(struct nc_reader *r, double radius, double half)
@@ -89,8 +189,9 @@ static int by_radius(struct nc_reader *r, const struct nc_plane *p,
 		return nc_refuse(r, r->block.at[NC_R], "an end away from the "
 				 "start; I J K for a full circle",
 				 "R on an arc that ends at its start");
-	if (half - radius > fmax(2 * r->o->machine->axis[p->a].pulse_mm,
-				 0.001 * radius))
+	if (half - radius > NOTHING_MM +
+	    rounded_mm(digit_mm(r, NC_BIT(p->a) | NC_BIT(p->b))) +
+	    digit_mm(r, NC_BIT(NC_R)) / 2)
 		return refuse_radius(r, radius, half);
 	if (radius > half)
 		off = sqrt((radius - half) * (radius + half)) / chord;
@@ -106,7 +207,7 @@ static int centre(struct nc_reader *r, const struct nc_plane *p,
 		  struct interp_build_arc *arc)
 {
 	if (!nc_has(r, NC_R))
-		return by_centre(r, p, arc);
+		return by_centre(r, p, end_mm, arc);
 	if (r->block.words & NC_CENTRE)
 		return nc_refuse(r, r->block.at[NC_R], p->centre,
 				 "R beside a centre");
@@ -125,10 +226,36 @@ static double top_centre_from(const struct nc_reader *r, int i,
 	return r->arc_incremental ? nc_here(r)[axis] : r->offset_mm[axis];
 }
 
+/* A place of the top that leans is that of the bottom and its lean together. */
+static double top_digit_mm(const struct nc_reader *r, bool leans,
+			   uint32_t top, uint32_t bottom)
+{
+	return digit_mm(r, top) + (leans ? digit_mm(r, bottom) : 0);
+}
+
+static int check_top(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		     const struct interp_build_contour *c, bool leans)
+{
+	const double *here = nc_here(r);
+
+	return check_ring(r, &(struct ring) {
+		.name = "arc of the top",
+		.from_mm = { here[INTERP_U], here[INTERP_V] },
+		.to_mm = { end_mm[INTERP_U], end_mm[INTERP_V] },
+		.centre_mm = { c->centre_mm[0], c->centre_mm[1] },
+		.end_digit_mm = top_digit_mm(r, leans,
+			NC_BIT(NC_U) | NC_BIT(NC_V),
+			NC_BIT(NC_X) | NC_BIT(NC_Y)),
+		.centre_digit_mm = top_digit_mm(r, leans,
+			NC_BIT(NC_UI) | NC_BIT(NC_UJ),
+			NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_R)),
+	}, end_mm);
+}
+
 /* The arc of the top.  Its direction is the G word behind the colon, or else
  * that of the bottom.  If the line only has U or V, the top goes straight. */
-static int top(struct nc_reader *r, int motion,
-	       const struct interp_build_contour *bottom,
+static int top(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+	       int motion, const struct interp_build_contour *bottom,
 	       struct interp_build_contour *c)
 {
 	const struct nc_block *b = &r->block;
@@ -165,14 +292,14 @@ static int top(struct nc_reader *r, int motion,
 		  c->centre_mm[1] - here[INTERP_V]) < NOTHING_MM)
 		return nc_refuse_at(r, r->line, "I or J away from 0",
 				    "a top arc of radius 0");
-	return 0;
+	return check_top(r, end_mm, c, leans);
 }
 
 static int go_two(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		  int motion, const struct interp_build_contour *bottom)
 {
 	struct interp_build_contour two[2] = { *bottom };
-	const int err = top(r, motion, bottom, &two[1]);
+	const int err = top(r, end_mm, motion, bottom, &two[1]);
 
 	return err ? err : contour_two(&r->contour, end_mm, two, &r->word,
 				     r->diag);
