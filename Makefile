@@ -109,8 +109,8 @@ SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
 PLAN	:= $(wildcard clients/plan/*.c)
-# The one library for which a little C++ is needed.
-OMPL	:= clients/plan/corridor.cc
+# The two libraries for which a little C++ is needed: OMPL and Eigen.
+PLAN_CC	:= $(wildcard clients/plan/*.cc)
 PANEL_C	:= $(wildcard clients/panel/*.c)
 SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
@@ -326,7 +326,7 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(VALUES) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
 	$(call link,-lwebsockets -lssl -linih -llcm -lsodium -ljansson -lsystemd -lm)
 
-$(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
+$(B)/edm-plan: $(call obj,$(PLAN)) $(PLAN_CC:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
 	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
 # Of edm-plan, without its main().
@@ -339,7 +339,7 @@ $(B)/unit/test_plan_core $(B)/unit/test_plan_bounds $(B)/unit/test_plan_near: $(
 $(B)/unit/test_plan_lp: $(call obj,clients/plan/lp.c)
 $(B)/unit/test_plan_lp: UNIT_LIBS = -lglpk
 
-$(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
+$(B)/unit/test_corridor: $(PLAN_CC:%.cc=$(B)/%.o)
 $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
 
 # Of edmd itself, without its main().
@@ -374,7 +374,7 @@ $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) 
 	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
 
 $(B)/tests/bench/plan.o: INC_bench += -Iclients/plan
-$(B)/bench/plan: $(B)/tests/bench/plan.o $(filter-out %/main.o,$(call obj,$(PLAN))) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
+$(B)/bench/plan: $(B)/tests/bench/plan.o $(filter-out %/main.o,$(call obj,$(PLAN))) $(PLAN_CC:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
 	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
 $(B)/bench/wait: $(SETUP_O)

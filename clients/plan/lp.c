@@ -5,11 +5,44 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define DUST		1e-9		/* of the largest term of a row: none */
+#define DUST		1e-7		/* of the largest term of a row: none */
 #define MISS		1e-6		/* a row may be missed by that, mm */
 #define ITERATIONS	200		/* until it is asked whether to stop */
 #define ROUNDS		500		/* of these */
 #define ROUND_MS	10000		/* a longer one has lost its way */
+
+glp_prob *lp_new(void)
+{
+	glp_prob *p = glp_create_prob();
+
+	glp_set_obj_dir(p, GLP_MAX);
+	return p;
+}
+
+void lp_bound(glp_prob *p, int col, double low, double high)
+{
+	if (low < high)
+		glp_set_col_bnds(p, col, GLP_DB, low, high);
+	else
+		glp_set_col_bnds(p, col, GLP_FX, 0, 0);
+}
+
+void lp_put(struct lp_row *r, int col, double value)
+{
+	if (value == 0)
+		return;
+	r->n++;
+	r->index[r->n] = col;
+	r->value[r->n] = value;
+}
+
+void lp_at_least(glp_prob *p, const struct lp_row *r, double least)
+{
+	const int row = glp_add_rows(p, 1);
+
+	glp_set_row_bnds(p, row, GLP_LO, least, 0);
+	glp_set_mat_row(p, row, r->n, r->index, r->value);
+}
 
 /* Room for a row, as GLPK counts: from 1 on. */
 struct row {
