@@ -7,7 +7,7 @@
 #include "check.h"
 #include "contact.h"
 #include "free.h"
-#include "lead_in.h"
+#include "mouth.h"
 
 #include <errno.h>
 #include <string.h>
@@ -144,14 +144,14 @@ static bool reach(const struct job *j, const double *from, const double *over,
 static bool leads_out(const struct wayout_asked *a, const struct route *w,
 		      uint32_t i, double q[INTERP_NAXES])
 {
-	struct lead_in in;
+	struct mouth_lead in;
 
 	for (uint32_t k = 0; k < OVER_EACH; k++) {
 		const uint32_t over = w->n - 1 - k * (w->n - 1 - i) / OVER_EACH;
 
 		if (over > i && reach(a->j, w->node[i].q, w->node[over].q, q) &&
 		    is_free(a, w->node[i].q, q) &&
-		    lead_in_find(a->j, a->in, q, &in))
+		    mouth_find(a->j, a->in, q, &in))
 			return true;
 	}
 	return false;

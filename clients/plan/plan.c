@@ -10,7 +10,7 @@
 
 #include "check.h"
 #include "clocks.h"
-#include "lead_in.h"
+#include "mouth.h"
 #include "pullout.h"
 #include "repair.h"
 #include "spread.h"
@@ -249,14 +249,14 @@ static bool mouth_moves(const struct plan *p)
 /* Is it better, and does the machine come to its mouth?  Then it is taken. */
 static bool take_moved(struct plan *p, const struct plan_way *w)
 {
-	struct lead_in in;
+	struct mouth_lead in;
 
 	if (!is_better(p, w))
 		return false;
 	if (mouth_moves(p)) {
-		if (!lead_in_find(p->j, &p->c, w->q[0], &in))
+		if (!mouth_find(p->j, &p->c, w->q[0], &in))
 			return false;
-		lead_in_put(&in, &p->dense);
+		mouth_put(&in, &p->dense);
 	}
 	take_best(p, w);
 	return true;

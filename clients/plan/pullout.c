@@ -6,7 +6,7 @@
 
 #include "check.h"
 #include "closed.h"
-#include "lead_in.h"
+#include "mouth.h"
 #include "middle.h"
 #include "wayout.h"
 
@@ -170,12 +170,12 @@ static int turn_round(struct plan *p, const struct pull *u,
 		      const struct clearance *c)
 {
 	const struct route *out = &u->out;
-	struct lead_in in;
+	struct mouth_lead in;
 	int err;
 
-	if (!lead_in_find(p->j, c, out->node[out->n - 1].q, &in))
+	if (!mouth_find(p->j, c, out->node[out->n - 1].q, &in))
 		return EX_SOFTWARE;	/* the search had found it */
-	err = lead_in_put(&in, &p->dense);
+	err = mouth_put(&in, &p->dense);
 	for (uint32_t i = out->n - 1; i-- > 0 && err == 0;)
 		err = route_add(&p->dense, &out->node[i]);
 	p->dense.lines = p->dense.n;

@@ -10,7 +10,7 @@
 #include "clocks.h"
 #include "contact.h"
 #include "free.h"
-#include "lead_in.h"
+#include "mouth.h"
 #include "grow.h"
 
 #include <errno.h>
@@ -177,9 +177,9 @@ static bool is_free(const struct wayout *t, const double from[INTERP_NAXES],
  * have a second end, below. */
 static bool is_mouth(const struct wayout *t, const double q[INTERP_NAXES])
 {
-	struct lead_in in;
+	struct mouth_lead in;
 
-	if (lead_in_find(t->asked->j, t->asked->in, q, &in))
+	if (mouth_find(t->asked->j, t->asked->in, q, &in))
 		return true;
 	t->tried->unreached++;
 	return false;

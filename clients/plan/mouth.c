@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * lead_in.c - from where the machine stands to the mouth of a way in
+ * mouth.c - from where the machine stands to the mouth of a way in
  */
-#include "lead_in.h"
+#include "mouth.h"
 
 #include "check.h"
 
@@ -17,8 +17,8 @@ static bool is_free(const struct job *j, const struct clearance *c,
 	return check_block(j, from, to, c, &pair);
 }
 
-bool lead_in_find(const struct job *j, const struct clearance *c,
-		  const double mouth[INTERP_NAXES], struct lead_in *ret)
+bool mouth_find(const struct job *j, const struct clearance *c,
+		  const double mouth[INTERP_NAXES], struct mouth_lead *ret)
 {
 	memcpy(ret->q[0], j->config.start_mm, sizeof(ret->q[0]));
 	memcpy(ret->q[1], mouth, sizeof(ret->q[1]));
@@ -30,9 +30,9 @@ bool lead_in_find(const struct job *j, const struct clearance *c,
 	       is_free(j, c, ret->q[1], mouth);
 }
 
-int lead_in_put(const struct lead_in *in, struct route *w)
+int mouth_put(const struct mouth_lead *in, struct route *w)
 {
-	for (uint32_t i = 0; i < LEAD_IN_NODES; i++) {
+	for (uint32_t i = 0; i < MOUTH_NODES; i++) {
 		struct route_node n = { .rapid = true };
 
 		memcpy(n.q, in->q[i], sizeof(n.q));
