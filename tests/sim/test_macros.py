@@ -164,18 +164,16 @@ class Words:
         self.noise("G0", f"X[5*sin[{self.expression()}]]", "Y[#<_n>]")
         self.noise("#<_n>=[#<_n>+1]")
 
-    def block(self, loop=None):
+    def block(self):
+        """Without break and continue: rs274 keeps what it knows of them, and carries
+        out a later loop once too often or too seldom.  They have a test of their
+        own."""
         self.depth += 1
         for _ in range(self.rnd.randint(1, 3)):
             kinds = [self.move, self.move]
             if self.depth < 4:
                 kinds += [self.if_, self.while_, self.do, self.repeat, self.call]
             self.rnd.choice(kinds)()
-            if loop and self.rnd.random() < 0.2:
-                o = self.name()
-                self.noise("o", o, "if", self.truth())
-                self.noise("o", loop, self.rnd.choice(["break", "continue"]))
-                self.noise("o", o, "endif")
         self.depth -= 1
 
     def if_(self):
@@ -200,8 +198,6 @@ class Words:
         step, truth = self.counted()
         self.noise("o", o, "while", truth)
         self.noise(step)
-        # No break: when rs274 skips a while that has one, it leaves the loop around
-        # the next block too early.
         self.block()
         self.noise("o", o, "endwhile")
 
@@ -210,7 +206,7 @@ class Words:
         step, truth = self.counted()
         self.noise("o", o, "do")
         self.noise(step)
-        self.block(o)
+        self.block()
         self.noise("o", o, "while", truth)
 
     def repeat(self):
@@ -250,6 +246,18 @@ class Words:
             self.sub(o)
             begin = self.lines + begin
         return "\n".join(main[:2] + begin + main[2:] + ["M2", ""])
+
+
+@peer
+@pytest.mark.parametrize("word", ["break", "continue"])
+@pytest.mark.parametrize("begin, end", [
+    ("while [#1 lt 4]", "endwhile"), ("do", "while [#1 lt 4]")])
+def test_break_and_continue_go_where_linuxcnc_goes(word, begin, end, tmp_path):
+    path = tmp_path / "b.ngc"
+    path.write_text(f"G21 G90\n#1=0\no1 {begin}\n#1=[#1+1]\nG0 X[#1]\n"
+                    f"o2 if [#1 eq 2]\no1 {word}\no2 endif\nG0 Y[#1]\no1 {end}\n"
+                    "G0 Z-1\nM2\n")
+    assert_same(path, tmp_path)
 
 
 def rnd_blank(rnd):
