@@ -10,9 +10,10 @@
 #include <dlfcn.h>
 #include <netinet/in.h>
 #include <string.h>
+#include <stdint.h>
 #include <sys/socket.h>
 
-#define REAL(name)	((typeof(&name))dlsym(RTLD_NEXT, #name))
+#define REAL(name)	((typeof(&name))(uintptr_t)dlsym(RTLD_NEXT, #name))
 
 int socket(int domain, int type, int protocol)
 {

@@ -308,7 +308,8 @@ void free_widen(struct free_way *w, int rounds)
 	struct lp l = { 0 };
 
 	w->least_mm = try_way(w, 0);
-	for (int i = 0; i < rounds && room > ROOM_LEAST_MM && moves(w, w->n - 2) &&
+	for (int i = 0; i < rounds && room > ROOM_LEAST_MM &&
+	     moves(w, w->n - 2) &&
 	     w->least_mm < w->enough_mm && !bar_interrupted(); i++) {
 		double wider;
 

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-#define LED		150		/* points of the electrode that are led */
+#define LED		150		/* points of it that are led */
 #define LOOKED_AT	3000		/* that are compared with the box */
 #define BESIDE_MM	0.5		/* so far from it: what lies between the
 					 * points looked at stays outside */

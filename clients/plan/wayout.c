@@ -173,8 +173,8 @@ static bool is_free(const struct wayout *t, const double from[INTERP_NAXES],
 	return check_block(t->asked->j, to, from, t->asked->c, &pair);
 }
 
-/* It is out at @q; does the machine come there from where it stands?  A bore may
- * have a second end, below. */
+/* It is out at @q; does the machine come there from where it stands?  A bore
+ * may have a second end, below. */
 static bool is_mouth(const struct wayout *t, const double q[INTERP_NAXES])
 {
 	struct mouth_lead in;
