@@ -15,8 +15,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Radii that differ by less are equal. */
-#define EVEN_MM		1e-6
+/* Radii that differ by less are walked as they are: a spiral within so many
+ * pulses stays between its circles.  More would leave what a walk looks at. */
+#define SPIRAL_PULSES	2.0
+#define SPIRAL_OF_R	0.001
+#define SPIRAL_MOST	5.0
 
 /* If an arc of more than half a turn has a shorter chord, in radii, or a centre
  * that moves farther, its far side would move with it. */
@@ -33,9 +36,9 @@
  * equal. */
 #define SAME_ANGLE	1e-5
 
-/* A lattice point of an arc is no farther beside it, beside the tolerance: a
- * centre and the nearest lattice point differ, too. */
-#define BESIDE_PULSES	7.0
+/* A lattice point of an arc is no farther beside it, beside the tolerance: the
+ * radii may differ, and so may a centre and the nearest lattice point. */
+#define BESIDE_PULSES	(SPIRAL_MOST + 5)
 
 static const struct interp_axis_limits *limits(const struct build_arc *p,
 					       uint32_t a)
@@ -394,6 +397,16 @@ static bool is_straight(const struct build_arc *p)
 	return is_steep(&p->arc) && chord_off_mm(&p->arc) <= near;
 }
 
+static bool is_even(const struct build_arc *p)
+{
+	const double least = smaller(p->arc.r_mm, p->arc.r_mm + p->arc.dr_mm);
+	const double pulse = pulse_of(p);
+
+	return fabs(p->arc.dr_mm) <=
+	       larger(SPIRAL_PULSES * pulse,
+		      smaller(SPIRAL_OF_R * least, SPIRAL_MOST * pulse));
+}
+
 enum build_arc_ends build_arc_even(struct build_arc *p,
 				   struct interp_build_arc *word)
 {
@@ -404,7 +417,7 @@ enum build_arc_ends build_arc_even(struct build_arc *p,
 	const double theta = arc->theta + arc->sweep / 2;
 	const double r = (arc->r_mm + r1) / 2, by = arc->dr_mm * r / chord;
 
-	if (p->word->turns || fabs(arc->dr_mm) <= EVEN_MM || is_straight(p))
+	if (p->word->turns || is_even(p) || is_straight(p))
 		return BUILD_ARC_AS_IT_IS;
 	p->mid_mm[0] = arc->a_mm + r * cos(theta);
 	p->mid_mm[1] = arc->b_mm + r * sin(theta);
