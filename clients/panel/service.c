@@ -4,6 +4,7 @@
 
 #include "submission.h"
 #include "talk.h"
+#include "talk_stop.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -19,6 +20,7 @@
 #define OPEN_S		1.0		/* between two tries to open the
 					 * channel */
 #define SENDINGS	2
+#define EDMD_S		0.2		/* edmd answers in a period */
 
 /* A question that is under way; the library calls back with it. */
 struct asking {
@@ -167,6 +169,23 @@ static void on_answer(void *arg, int err, const struct talk_ack *ack)
 	asking_free(q);
 }
 
+/* There is no edmd-jobs, nor a key of it: edmd itself can still end motion. */
+static int ask_edmd(const struct service *a, const struct talk_question *q,
+		    service_done_fn done, void *arg)
+{
+	struct talk_answer got;
+
+	if (!talk_stop_is(q->verb) ||
+	    talk_stop_ask(a->machine, q->verb, EDMD_S, &got) < 0)
+		return -ENOTCONN;
+	if (done)
+		done(arg, &(struct service_answer) {
+			.code = got.code, .reason = got.reason, .body = "",
+		});
+	talk_answer_free(&got);
+	return 0;
+}
+
 int service_ask(struct service *a, const struct service_question *ask,
 		service_done_fn done, void *arg)
 {
@@ -178,7 +197,7 @@ int service_ask(struct service *a, const struct service_question *ask,
 	int err;
 
 	if (!a->talk)
-		return -ENOTCONN;
+		return ask_edmd(a, &q, done, arg);
 	n = calloc(1, sizeof(*n));
 	if (!n)
 		return -EAGAIN;

@@ -87,8 +87,9 @@ void service_look(struct service *a);
 
 /**
  * service_ask() - send a question or a verb.  @done is called once, from
- * service_look(), unless service_forget() was called for @arg.  If the question
- * has to make room for another one, it is called with code 75.
+ * service_look(), or at once if only edmd itself can be asked; never after
+ * service_forget() was called for @arg.  If the question has to make room for
+ * another one, it is called with code 75.
  *
  * Return: 0; -EAGAIN: too many questions are open; -ENOTCONN: see
  * service_why().

@@ -40,6 +40,7 @@ struct loop {
 	struct setup_wanted wanted;
 	struct shm_status *status;
 	struct shm_commands *commands;
+	struct shm_stops *stops;	/* NULL: no way of their own */
 	struct program *program;	/* loaded; or NULL */
 	double pulse_mm[SHM_NAXES];
 	uint64_t axes_key, home_key;	/* key.h */

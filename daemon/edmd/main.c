@@ -120,9 +120,16 @@ static int commands_open(struct loop *l, const char *name)
 	int err = shm_command_create(&l->commands, name,
 				     l->status->head.instance);
 
-	if (err < 0)
+	if (err < 0) {
 		log_line(LOG_ERROR, "edmd: the socket for commands: %s",
 			 strerror(-err));
+		return err;
+	}
+	err = shm_stop_create(&l->stops, name, l->status);
+	if (err < 0)
+		log_line(LOG_ERROR, "edmd: the socket for acts that end "
+			 "motion: %s; a folder that edmd may write, /run/edmd, "
+			 "or none", strerror(-err));
 	return err;
 }
 
@@ -132,12 +139,15 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 	struct setup_report setup = { .item = { { .what = NULL } } };
 	int code;
 
-	if (commands_open(l, c->name) < 0)
+	if (commands_open(l, c->name) < 0) {
+		shm_command_destroy(l->commands);
 		return EX_CANTCREAT;
+	}
 	setup_process(&setup);
 	resume(l, c, before);
 	code = run(l, c, &setup);
 	program_close(l->program);
+	shm_stop_destroy(l->stops);
 	shm_command_destroy(l->commands);
 	return code;
 }

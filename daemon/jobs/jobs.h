@@ -119,6 +119,9 @@ void status_guest(void *jobs);
 /** verbs_take() - take a COMMAND; called by lcm.c. */
 void verbs_take(void *jobs, const struct jobs_lcm_command *c);
 
+/** verbs_want() - what a verb wants; called by lcm.c. */
+enum trust_want verbs_want(const char *verb);
+
 /** submit_take() - take a JOB chunk; called by lcm.c. */
 void submit_take(void *jobs, const struct jobs_lcm_chunk *c);
 

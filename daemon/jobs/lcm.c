@@ -135,8 +135,9 @@ static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
 /* Is the packet signed with a known key, for the present time, and new?  If
  * not, say so. */
 static bool is_taken(struct jobs_lcm *w, const struct origin *o,
-		     const char *client, int64_t seq)
+		     const struct trust_client *from, int64_t seq)
 {
+	const char *client = from->name;
 	struct jobs_lcm_ack to = {
 		.key = o->packet->seal.key, .client = client, .seq = seq,
 		.code = EX_PROTOCOL,
@@ -156,7 +157,7 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 		return false;
 	}
 	if (cause == TRUST_FINE)
-		cause = trust_fresh(w->trust, o->packet, client, now);
+		cause = trust_fresh(w->trust, o->packet, from, now);
 	if (cause == TRUST_FINE)
 		return true;
 	trust_who(o->packet, who);
@@ -188,7 +189,9 @@ static bool on_command(struct jobs_lcm *w, const struct origin *o)
 		.by = o->packet->key, .from = o->packet->from,
 		.signed_us = trust_signed_us(w->trust, s),
 	};
-	if (is_taken(w, o, m.client, m.seq))
+	if (is_taken(w, o, &(struct trust_client) {
+			.name = m.client, .want = w->handlers.want(m.verb) },
+		     m.seq))
 		w->handlers.command(w->handlers.arg, &c);
 	edm_command_t_decode_cleanup(&m);
 	return true;
@@ -241,7 +244,8 @@ static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 		.signed_us = trust_signed_us(w->trust, s),
 		.by = o->packet->key, .from = o->packet->from,
 	};
-	if (is_taken(w, o, m.client, m.seq))
+	if (is_taken(w, o, &(struct trust_client) {
+			.name = m.client, .want = TRUST_ACTS }, m.seq))
 		w->handlers.chunk(w->handlers.arg, &c);
 	edm_job_chunk_t_decode_cleanup(&m);
 	return true;

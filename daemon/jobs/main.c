@@ -333,6 +333,7 @@ static int open_lcm(struct jobs *j)
 {
 	struct jobs_lcm_handlers h = {
 		.command = verbs_take, .chunk = submit_take,
+		.want = verbs_want,
 		.guest = status_guest,
 		.trust = &j->trust, .arg = j,
 	};

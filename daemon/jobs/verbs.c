@@ -677,6 +677,15 @@ static const struct verb *verb_find(const char *name)
 	return NULL;
 }
 
+enum trust_want verbs_want(const char *verb)
+{
+	const struct verb *v = verb_find(verb);
+
+	return !v || v->kind == VERB_ASKS ? TRUST_ASKS :
+	       v->kind == VERB_ENDS && v->machine != VERB_OWN ? TRUST_ENDS :
+	       TRUST_ACTS;
+}
+
 static void refuse_role(struct jobs *j, const struct jobs_lcm_command *c,
 			const struct verb *v)
 {

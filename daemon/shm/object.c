@@ -9,7 +9,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -207,6 +209,28 @@ int object_open(void **ret, const char *machine, const char *what,
 	err = object_open_fd(ret, fd, bytes, writable);
 	close(fd);
 	return err;
+}
+
+int object_thread(pthread_t *ret, void *(*run)(void *arg), void *arg)
+{
+	sigset_t all, before;
+	int err;
+
+	sigfillset(&all);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	err = pthread_create(ret, NULL, run, arg);
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	return -err;
+}
+
+void object_thread_end(pthread_t thread, int end)
+{
+	const uint64_t one = 1;
+
+	/* Writing 1 to an eventfd whose count is 0 cannot fail. */
+	if (write(end, &one, sizeof(one)) != sizeof(one))
+		abort();
+	pthread_join(thread, NULL);
 }
 
 /*

@@ -8,7 +8,8 @@
  *	status		edmd writes, anyone of the group reads: one snapshot,
  *			a ring of per-cycle trace records, a ring of events
  *	command		a socket: edmd-jobs sends commands, each is answered by
- *			an event with its id
+ *			an event with its id; acts that end motion also come by
+ *			a socket of their own (shm_stop_create())
  *	program.<n>	edmd-jobs writes once; edmd copies it before it looks at
  *			it (interp/program.h)
  *
@@ -323,6 +324,7 @@ struct shm_command {
 };
 
 struct shm_commands;			/* edmd's end */
+struct shm_stops;			/* of stop.c */
 
 /* -- Writer: edmd ------------------------------------------------------- */
 
@@ -383,6 +385,28 @@ void shm_command_destroy(struct shm_commands *c);
  * checked. RT-safe.
  */
 bool shm_command_take(struct shm_commands *c, struct shm_command *ret);
+
+/**
+ * shm_stop_create() - listen at the place "stop" for acts that end motion:
+ * words/stop_act.h.
+ *
+ * The group may connect.  It starts a thread that takes acts from the socket,
+ * and answers them when @status has the answer.  Startup only.
+ */
+int shm_stop_create(struct shm_stops **ret, const char *machine,
+		    const struct shm_status *status);
+
+/** shm_stop_destroy() - end the thread, remove the socket; @s may be NULL. */
+void shm_stop_destroy(struct shm_stops *s);
+
+/**
+ * shm_stop_take() - the next act, as a command that is checked and never late.
+ * @s: NULL: there is none.  RT-safe.
+ */
+bool shm_stop_take(struct shm_stops *s, struct shm_command *ret);
+
+/** shm_stop_waits() - how many acts wait to be taken.  Any thread. */
+unsigned int shm_stop_waits(const struct shm_stops *s);
 
 /**
  * shm_done_begin() - record that command @id is taken, before it has any

@@ -40,8 +40,9 @@ export const zh: Record<Word, string> = {
 	"why.probe": "移动,直到电极碰到工件。",
 	"why.absent": "本机没有运行 edmd。启动:systemctl start edmd。",
 	"why.lost": "控制循环停住或 edmd 已退出。显示的是最后的数值。",
-	"why.connection": "页面与面板失去连接。正在进行的加工不受影响;页面会自动重连。",
-	"why.nojobs": "edmd-jobs 没有应答:程序和命令要等待。",
+	"why.connection": "页面与面板失去连接。正在进行的加工不受影响;页面会自动重连。在此之前请用机床自身的急停按钮。",
+	"why.nojobs": "edmd-jobs 没有应答。只有暂停、停止和急停仍直接发给 edmd;另外请用机床自身的急停按钮。",
+	"why.noway": "任何命令都到不了机床。请用机床自身的急停按钮。",
 
 	"no.role": "权限“{role}”只能查看。请以操作员登录。",
 	"no.connection": "没有与面板连接。",
