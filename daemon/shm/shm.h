@@ -51,7 +51,7 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	9
+#define SHM_LAYOUT	10
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 #define SHM_PATH_MAX	96
