@@ -129,9 +129,9 @@ static void shared_structs_keep_their_size(void **state)
 	assert_int_equal(sizeof(struct shm_done_slot), 24);
 	assert_int_equal(sizeof(struct shm_ended_slot), 136);
 	assert_int_equal(offsetof(struct shm_status, trace),
-			 4448 + 256 * 24 + 64 * 136);
+			 4528 + 256 * 24 + 64 * 136);
 	assert_int_equal(sizeof(struct shm_status),
-			 4448 + 256 * 24 + 64 * 136 + 16384 * 144 + 1024 * 72);
+			 4528 + 256 * 24 + 64 * 136 + 16384 * 144 + 1024 * 72);
 }
 
 static void names_are_those_of_the_cycle(void **state)
