@@ -41,7 +41,7 @@ void axis_state_set(struct cycle *c, const struct axis_state *s)
 		a->added = added(s, i);
 		a->toward = s->toward[i];
 	}
-	memcpy(c->resync.off, s->off, sizeof(c->resync.off));
+	resync_set(&c->resync, s->off);
 	c->limit = s->limit;
 	c->comp.resting = true;
 	/* Without a PLC nobody would ever say another temperature. */

@@ -28,13 +28,24 @@ static int32_t minus(int32_t a, int32_t b)
 
 /* -- Where the axes stand -------------------------------------------------- */
 
-bool resync_is_off(const struct cycle *c)
+static bool any(const int32_t off[INTERP_NAXES])
 {
-	int32_t any = 0;
+	int32_t some = 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
-		any |= c->resync.off[i];
-	return any != 0;
+		some |= off[i];
+	return some != 0;
+}
+
+void resync_set(struct resync *r, const int32_t off[INTERP_NAXES])
+{
+	memcpy(r->off, off, sizeof(r->off));
+	r->is_off = any(r->off);
+}
+
+bool resync_is_off(const struct cycle *c)
+{
+	return c->resync.is_off;
 }
 
 /* Are the axes without power, or held where they stand? */
@@ -56,16 +67,18 @@ static void measure(struct cycle *c, const struct io_inputs *in)
 		if (in->ran_on[i] > r->ran_on[i])
 			r->ran_on[i] = in->ran_on[i];
 	}
+	r->is_off = any(r->off);
 }
 
+/* An axis that is not there stands at 0, and is sent there. */
 static bool is_near(const struct cycle *c, const struct io_inputs *in)
 {
+	uint32_t far = 0;
+
 	for (int i = 0; i < INTERP_NAXES; i++)
-		if (c->config.axis[i].present &&
-		    llabs((int64_t)in->actual[i] -
-			  comp_pulses(&c->comp.axis[i])) > NEAR_PULSES)
-			return false;
-	return true;
+		far |= (uint32_t)minus(in->actual[i], c->comp.sent[i]) +
+		       NEAR_PULSES > 2 * NEAR_PULSES;
+	return !far;
 }
 
 static bool is_far(const struct cycle *c)
@@ -92,6 +105,7 @@ void resync_settle(struct cycle *c)
 		c->manual.from = plus(c->manual.from,
 				      r->off[c->manual.axis]);
 	memset(r->off, 0, sizeof(r->off));
+	r->is_off = false;
 	memset(r->ran_on, 0, sizeof(r->ran_on));
 	r->held = 0;
 	c->comp.stale = true;
@@ -303,6 +317,7 @@ static enum resync_answer straight(struct cycle *c)
 	for (int i = 0; i < INTERP_NAXES; i++)
 		r->off[i] = take_off(c, r->off[i],
 				     (int32_t)llround(r->from[i] * left));
+	r->is_off = any(r->off);
 	if (resync_is_off(c) || r->mover.v_mm_s != 0)
 		return RESYNC_BUSY;
 	memset(r->ran_on, 0, sizeof(r->ran_on));
@@ -321,11 +336,14 @@ void resync_apply(struct cycle *c, int32_t target[INTERP_NAXES])
 {
 	struct resync *r = &c->resync;
 
+	if (!r->walks && !r->is_off)
+		return;
 	for (uint32_t m = r->walks ? r->held : 0; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
 
 		r->off[i] = minus(r->hold[i], target[i]);
 	}
+	r->is_off = any(r->off);
 	for (int i = 0; i < INTERP_NAXES; i++)
 		target[i] = plus(target[i], r->off[i]);
 }

@@ -44,6 +44,7 @@ struct resync_config {
 struct resync {
 	int32_t off[INTERP_NAXES];	/* from where the path wants it to where
 					 * it stands, or is on its way back */
+	bool is_off;			/* an axis is */
 	int32_t ran_on[INTERP_NAXES];	/* farther than max, by itself */
 	double sure_mm;
 	bool sure_beside;		/* ... was beside the path */
@@ -71,6 +72,9 @@ enum resync_answer {
 	RESYNC_TOO_FAR,			/* an axis was moved far by hand */
 	RESYNC_GIVEN_UP,		/* it was stopped on its way */
 };
+
+/** resync_set() - the axes stand @off from where the path wants them. */
+void resync_set(struct resync *r, const int32_t off[INTERP_NAXES]);
 
 /** resync_look() - before anything moves: where do the axes stand? */
 void resync_look(struct cycle *c, const struct io_inputs *in);

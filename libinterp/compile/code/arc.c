@@ -75,12 +75,33 @@ static double rounded_mm(double digit_mm)
 	return digit_mm * M_SQRT1_2;
 }
 
+/* An end and a centre; where the top of a wire leans, those of the bottom too. */
+#define RING_PLACES	4
+
 /* Ends of an arc in its plane, and its centre. */
 struct ring {
 	double from_mm[2], to_mm[2], centre_mm[2];
-	double end_digit_mm, centre_digit_mm;
+	uint32_t words[RING_PLACES];	/* that say a place; 0: none */
 	const char *name;
 };
+
+/* How far the radii may differ. */
+static double ring_rounded_mm(const struct nc_reader *r, const struct ring *g)
+{
+	double mm = 0;
+
+	for (int i = 0; i < RING_PLACES; i++)
+		if (g->words[i])
+			mm += 2 * rounded_mm(digit_mm(r, g->words[i]));
+	return mm;
+}
+
+static double length(const double from_mm[2], const double to_mm[2])
+{
+	const double a = to_mm[0] - from_mm[0], b = to_mm[1] - from_mm[1];
+
+	return sqrt(a * a + b * b);
+}
 
 /*
  * Start and end are each at their own place beside the circle.  A centre that
@@ -89,15 +110,16 @@ struct ring {
 static int check_ring(struct nc_reader *r, const struct ring *g,
 		      const double end_mm[INTERP_NAXES])
 {
-	const double r0 = hypot(g->from_mm[0] - g->centre_mm[0],
-				g->from_mm[1] - g->centre_mm[1]);
-	const double r1 = hypot(g->to_mm[0] - g->centre_mm[0],
-				g->to_mm[1] - g->centre_mm[1]);
-	const double most = 2 * rounded_mm(g->end_digit_mm) +
-			    2 * rounded_mm(g->centre_digit_mm);
+	const double r0 = length(g->from_mm, g->centre_mm);
+	const double r1 = length(g->to_mm, g->centre_mm);
+	const double off = fabs(r1 - r0);
 	char wanted[96];
+	double most;
 
-	if (fabs(r1 - r0) <= most + NOTHING_MM)
+	if (off <= NOTHING_MM)
+		return 0;
+	most = ring_rounded_mm(r, g);
+	if (off <= most + NOTHING_MM)
 		return 0;
 	snprintf(wanted, sizeof(wanted), "radii that agree within %.3g mm, as "
 		 "its last digits can say them", most);
@@ -148,8 +170,8 @@ static int by_centre(struct nc_reader *r, const struct nc_plane *p,
 		.from_mm = { here[p->a], here[p->b] },
 		.to_mm = { end_mm[p->a], end_mm[p->b] },
 		.centre_mm = { arc->centre_a_mm, arc->centre_b_mm },
-		.end_digit_mm = digit_mm(r, NC_BIT(p->a) | NC_BIT(p->b)),
-		.centre_digit_mm = digit_mm(r, NC_BIT(p->ca) | NC_BIT(p->cb)),
+		.words = { NC_BIT(p->a) | NC_BIT(p->b),
+			   NC_BIT(p->ca) | NC_BIT(p->cb) },
 	}, end_mm);
 }
 
@@ -226,13 +248,6 @@ static double top_centre_from(const struct nc_reader *r, int i,
 	return r->arc_incremental ? nc_here(r)[axis] : r->offset_mm[axis];
 }
 
-/* A place of the top that leans is that of the bottom and its lean together. */
-static double top_digit_mm(const struct nc_reader *r, bool leans,
-			   uint32_t top, uint32_t bottom)
-{
-	return digit_mm(r, top) + (leans ? digit_mm(r, bottom) : 0);
-}
-
 static int check_top(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_contour *c, bool leans)
 {
@@ -243,12 +258,12 @@ static int check_top(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		.from_mm = { here[INTERP_U], here[INTERP_V] },
 		.to_mm = { end_mm[INTERP_U], end_mm[INTERP_V] },
 		.centre_mm = { c->centre_mm[0], c->centre_mm[1] },
-		.end_digit_mm = top_digit_mm(r, leans,
+		.words = {
 			NC_BIT(NC_U) | NC_BIT(NC_V),
-			NC_BIT(NC_X) | NC_BIT(NC_Y)),
-		.centre_digit_mm = top_digit_mm(r, leans,
 			NC_BIT(NC_UI) | NC_BIT(NC_UJ),
-			NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_R)),
+			leans ? NC_BIT(NC_X) | NC_BIT(NC_Y) : 0,
+			leans ? NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_R) : 0,
+		},
 	}, end_mm);
 }
 

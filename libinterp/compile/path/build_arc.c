@@ -413,12 +413,14 @@ enum build_arc_ends build_arc_even(struct build_arc *p,
 	const struct interp_arc *arc = &p->arc;
 	const double a = p->to_mm[arc->axis_a] - p->from_mm[arc->axis_a];
 	const double b = p->to_mm[arc->axis_b] - p->from_mm[arc->axis_b];
-	const double chord = hypot(a, b), r1 = arc->r_mm + arc->dr_mm;
 	const double theta = arc->theta + arc->sweep / 2;
-	const double r = (arc->r_mm + r1) / 2, by = arc->dr_mm * r / chord;
+	const double r = arc->r_mm + arc->dr_mm / 2;
+	double chord, by;
 
 	if (p->word->turns || is_even(p) || is_straight(p))
 		return BUILD_ARC_AS_IT_IS;
+	chord = hypot(a, b);
+	by = arc->dr_mm * r / chord;
 	p->mid_mm[0] = arc->a_mm + r * cos(theta);
 	p->mid_mm[1] = arc->b_mm + r * sin(theta);
 	if (fabs(arc->sweep) > ANGLE_TURN / 2 && fabs(by) > pulse_of(p) &&
@@ -447,11 +449,8 @@ static int settle_far(const struct build_arc *p, struct interp_diag *diag)
 
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 {
-	int err = build_arc_shape(p, diag);
+	int err = arc_travel(p, diag);
 
-	if (err < 0)
-		return err;
-	err = arc_travel(p, diag);
 	if (err < 0)
 		return err;
 	p->straight = is_steep(&p->arc);

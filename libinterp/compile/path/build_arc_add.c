@@ -108,11 +108,12 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		return add_halves(b, end_mm, &plan, w, diag);
 	case BUILD_ARC_MOVED:
 		plan.word = &moved;
+		err = build_arc_shape(&plan, diag);
 		break;
 	case BUILD_ARC_AS_IT_IS:
 		break;
 	}
-	err = build_arc_plan(&plan, diag);
+	err = err < 0 ? err : build_arc_plan(&plan, diag);
 	if (err < 0)
 		return err;
 	if (plan.straight)
