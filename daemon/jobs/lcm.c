@@ -44,6 +44,7 @@ struct jobs_lcm {
 struct origin {
 	enum trust_cause cause;
 	const struct trust_packet *packet;
+	bool here;		/* it came by the socket of this host */
 };
 
 /* LCM declares strings as char *, but only reads them. */
@@ -150,14 +151,15 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 	char who[KEYFILE_NAME_MAX];
 	bool is_guest;
 
-	if (w->local && n < LOCAL_CLIENT_MAX)
-		local_is(w->local, &(struct local_who) { to.key, client });
 	if (cause == TRUST_FINE && (n == 0 || n >= TRUST_CLIENT_MAX)) {
 		jobs_lcm_ack(w, &to);
 		return false;
 	}
 	if (cause == TRUST_FINE)
 		cause = trust_fresh(w->trust, o->packet, from, now);
+	/* Who repeats a packet of another is not the other. */
+	if (o->here && n < LOCAL_CLIENT_MAX && cause != TRUST_REPLAY)
+		local_is(w->local, &(struct local_who) { to.key, client });
 	if (cause == TRUST_FINE)
 		return true;
 	trust_who(o->packet, who);
@@ -251,12 +253,13 @@ static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 	return true;
 }
 
-static void on_packet(struct jobs_lcm *w, const struct udpm_packet *u)
+static void on_packet(struct jobs_lcm *w, const struct udpm_packet *u,
+		      bool here)
 {
 	const bool command = strcmp(u->channel, w->command) == 0;
 	const int64_t now = clock_us(CLOCK_MONOTONIC);
 	struct trust_packet packet = { .channel = u->channel, .from = u->from };
-	struct origin o = { .packet = &packet };
+	struct origin o = { .packet = &packet, .here = here };
 	char who[KEYFILE_NAME_MAX] = "no key";
 
 	/* It is for another machine, or it is something that only services
@@ -381,7 +384,7 @@ static void handle_net(struct jobs_lcm *w)
 	uint64_t strange;
 
 	if (udpm_take(w->net, &packet))
-		on_packet(w, &packet);
+		on_packet(w, &packet, false);
 	strange = udpm_strange(w->net, &from);
 	for (; w->strange < strange; w->strange++)
 		trust_refuse(w->trust, TRUST_STRANGE, "nobody", from,
@@ -393,7 +396,7 @@ void jobs_lcm_handle(struct jobs_lcm *w)
 	struct udpm_packet packet;
 
 	if (w->local && local_take(w->local, &packet))
-		on_packet(w, &packet);
+		on_packet(w, &packet, true);
 	if (w->net)
 		handle_net(w);
 }

@@ -159,6 +159,31 @@ def test_status_and_events_come_by_the_socket_and_answers_only_there(machine):
     assert lcm.acks and other.acks == []
 
 
+def test_who_asks_over_the_network_is_answered_there(machine):
+    """Whoever asked by the socket at the same moment."""
+    near, far = Local(machine.name), machine.client
+    for client in (near, far):
+        assert client.ask("queue").code == 0
+    os.kill(machine.jobs.pid, signal.SIGSTOP)
+    near.send_command("queue")
+    seq = far.send_command("queue")
+    os.kill(machine.jobs.pid, signal.SIGCONT)
+    far.heard(lambda: far.acks_to(seq))
+    assert far.ask("queue").code == 0
+
+
+def test_who_repeats_a_packet_of_another_gets_no_answers_of_his(machine):
+    near, far = Local(machine.name), machine.client
+    m = rig.command_t()
+    m.client, m.seq, m.verb = far.name, far.number(), "queue"
+    packet = far.seal("COMMAND", m.encode()).encode()
+    far.publish_raw("COMMAND", packet)
+    far.heard(lambda: far.acks_to(m.seq))
+    near.publish_raw("COMMAND", packet)
+    near.hear(0.5)
+    assert far.ask("queue").code == 0
+
+
 def test_who_does_not_read_stops_nobody(machine):
     """Its packets are dropped when its end is full."""
     slow = Local(machine.name)
