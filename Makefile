@@ -734,7 +734,7 @@ fuzz_o	= $(patsubst %.c,$(B)/watched/%.o,$1)
 FUZZ_A	:= $(B)/watched/all.a
 INC_fuzz = -Itests/unit $(INC_edmd) $(INC_libinterp)
 FUZZ_PARTS = $(INTERP) $(COMMON) $(RT) $(WORDS) $(SETUP) \
-	  $(addprefix daemon/shm/,publish.c object.c names.c) \
+	  $(addprefix daemon/shm/,publish.c object.c names.c stop.c) \
 	  $(addprefix daemon/edmd/,commands.c crossing.c loop.c publish.c)
 
 $(B)/watched/%.o: %.c
