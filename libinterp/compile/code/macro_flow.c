@@ -321,7 +321,7 @@ static int take_name(struct macro_line *l, struct call *c)
 	if (*at != '<' || l->r->d->classes['<'] != NC_LETTER_NAME)
 		return 0;
 	p = nc_name_end(at, l->end);
-	if (!p || c->name || c->number)
+	if (!p || c->name || c->number != 0)
 		return macro_refuse(l, at, "one program, by P or by <NAME>",
 				    p ? "a second program behind G65" :
 				    "a program's name without an end");
@@ -362,7 +362,7 @@ static int take_argument(struct macro_line *l, struct call *c)
 		c->local[which] = v;
 	else
 		*(letter == 'P' ? &c->number : &c->times) = v;
-	return c->name && c->number ?
+	return c->name && c->number != 0 ?
 	       macro_refuse(l, at, "one program, by P or by <NAME>",
 			    "a second program behind G65") : 0;
 }
