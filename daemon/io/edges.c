@@ -9,12 +9,12 @@
  */
 #include "edges.h"
 #include "clocks.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <pthread.h>
 #include <sched.h>
 #include <semaphore.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -315,7 +315,6 @@ static void be_real(struct edges *e)
 	if (c->priority > 0)
 		e->rank_err = pthread_setschedparam(pthread_self(), SCHED_FIFO,
 						    &p);
-	pthread_setname_np(pthread_self(), "edmd-edges");
 }
 
 int64_t edges_next_ns(int64_t now_ns, int64_t period_ns)
@@ -355,7 +354,6 @@ static void *run(void *arg)
 int edges_start(struct edges **ret, const struct edges_config *c)
 {
 	struct edges *e = calloc(1, sizeof(*e));
-	sigset_t all, before;
 	int err;
 
 	if (!e)
@@ -363,13 +361,11 @@ int edges_start(struct edges **ret, const struct edges_config *c)
 	e->c = *c;
 	pulser_init(&e->pulser, &c->pulser);
 	sem_init(&e->ready, 0, 0);
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	err = pthread_create(&e->thread, NULL, run, e);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	err = thread_start(&e->thread, &(struct thread) {
+		.name = "edmd-edges", .run = run, .arg = e });
 	if (err) {
 		free(e);
-		return -err;
+		return err;
 	}
 	while (sem_wait(&e->ready) < 0 && errno == EINTR)
 		;

@@ -7,6 +7,7 @@
 #include "clocks.h"
 #include "jobs_log.h"
 #include "regular.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -118,19 +119,16 @@ static void *writer(void *arg)
 	return NULL;
 }
 
-static int thread_start(struct checkpoint_file *f)
+static int writer_start(struct checkpoint_file *f)
 {
-	sigset_t all, old;
 	int err;
 
 	pthread_mutex_init(&f->lock, NULL);
 	pthread_cond_init(&f->wake, NULL);
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &old);
-	err = pthread_create(&f->thread, NULL, writer, f);
-	pthread_sigmask(SIG_SETMASK, &old, NULL);
+	err = thread_start(&f->thread, &(struct thread) {
+		.name = "jobs-checkpoint", .run = writer, .arg = f });
 	f->running = err == 0;
-	return -err;
+	return err;
 }
 
 /* -- The file ------------------------------------------------------------- */
@@ -234,7 +232,7 @@ int checkpoint_open(struct checkpoint_file **ret, const char *dir,
 		checkpoint_choose(block, machine, ret_last, &head);
 		f->sequence = head.sequence;
 		f->count = head.count;
-		err = thread_start(f);
+		err = writer_start(f);
 	}
 	if (err < 0) {
 		look_only(path, machine, ret_last);

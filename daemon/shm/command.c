@@ -11,6 +11,7 @@
 #include "object.h"
 
 #include "places.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -125,7 +126,9 @@ static int listen_at(struct shm_commands *c, const struct sockaddr_un *at)
 		return c->listening;
 	c->end = eventfd(0, EFD_CLOEXEC);
 	return c->end < 0 ? -errno :
-	       object_thread(&c->thread, commands_run, c);
+	       thread_start(&c->thread, &(struct thread) {
+			.name = "edmd-commands", .run = commands_run,
+			.arg = c });
 }
 
 static void commands_free(struct shm_commands *c)

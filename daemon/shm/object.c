@@ -9,7 +9,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -209,18 +208,6 @@ int object_open(void **ret, const char *machine, const char *what,
 	err = object_open_fd(ret, fd, bytes, writable);
 	close(fd);
 	return err;
-}
-
-int object_thread(pthread_t *ret, void *(*run)(void *arg), void *arg)
-{
-	sigset_t all, before;
-	int err;
-
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	err = pthread_create(ret, NULL, run, arg);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	return -err;
 }
 
 void object_thread_end(pthread_t thread, int end)

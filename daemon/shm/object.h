@@ -70,9 +70,6 @@ int object_head_check(const struct shm_head *h, uint64_t bytes);
 int object_open(void **ret, const char *machine, const char *what,
 		size_t bytes, bool writable);
 
-/** object_thread() - start a thread to which no signal is delivered. */
-int object_thread(pthread_t *ret, void *(*run)(void *arg), void *arg);
-
 /** object_thread_end() - tell it by the eventfd @end, and wait for it. */
 void object_thread_end(pthread_t thread, int end);
 

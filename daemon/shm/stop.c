@@ -16,6 +16,7 @@
 #include "clocks.h"
 #include "places.h"
 #include "stop_act.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -198,7 +199,8 @@ static int stops_start(struct shm_stops *s)
 		return s->listening;
 	s->end = eventfd(0, EFD_CLOEXEC);
 	return s->end < 0 ? -errno :
-	       object_thread(&s->thread, stops_run, s);
+	       thread_start(&s->thread, &(struct thread) {
+			.name = "edmd-stops", .run = stops_run, .arg = s });
 }
 
 static void stops_free(struct shm_stops *s)

@@ -158,3 +158,12 @@ def test_the_panel_s_stop_works_without_edmd_jobs(own, how):
         assert a["code"] == 0 and "edmd itself" in a["reason"], a
         live.where(lambda s: s["state"] == "fault", 20)
         is_over(m, "estop", how)
+
+
+def test_every_thread_has_a_name(machine):
+    for program, names in (
+            (machine.edmd, {"edmd", "edmd-cycle", "edmd-commands",
+                            "edmd-stops", "log"}),
+            (machine.jobs, {"edmd-jobs", "jobs-checkpoint", "log"})):
+        threads = pathlib.Path(f"/proc/{program.pid}/task").glob("*/comm")
+        assert {t.read_text().strip() for t in threads} == names
