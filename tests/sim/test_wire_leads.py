@@ -15,7 +15,7 @@ from test_wire_random import BOUND_MM
 from test_wire_taper import HEIGHT, WIRE, planes, rows_of
 from wire_lead_arcs import Leaning, Led, hausdorff, lead_ways, sound_contour
 from wire_leads import ArcLed, Open, many, words
-from wire_oracle import UM, path_of, read_iso
+from wire_oracle import UM, path_of, read_iso, ring_of
 
 RUNS = int(os.environ.get("EDM_RUNS", 25))
 
@@ -334,3 +334,53 @@ def test_leads_go_round_their_own_centres_on_both_planes():
                 assert hausdorff(on, lead.way(by)) < LEAD_MM + UM, about
     print(counts)
     assert counts["cut"] and counts["refuse"]
+
+# -- Passes -------------------------------------------------------------------
+
+def passed(rnd):
+    """Passes over a rounded square from a quarter circle that leads in: the
+    program, the square, its offsets, and whether the wire is inside."""
+    w, h = round(rnd.uniform(4, 12), 2), round(rnd.uniform(4, 12), 2)
+    r, rl = round(rnd.uniform(.5, 1.5), 2), round(rnd.uniform(.6, 1.6), 2)
+    offsets = [.15, .11, .105][:rnd.randint(1, 3)]
+    inside = rnd.random() < 0.5
+    s = 1 if inside else -1
+    corners = [(w / 2, -h / 2), (w / 2, h / 2), (-w / 2, h / 2),
+               (-w / 2, -h / 2)]
+    start, edges = (0, -h / 2), []
+    for i, (x, y) in enumerate(corners):
+        (ux, uy), (vx, vy) = [((1, 0), (0, 1), (-1, 0), (0, -1))[k % 4]
+                              for k in (i, i + 1)]
+        edges += [(x - r * ux, y - r * uy, None),
+                  (x + r * vx, y + r * vy,
+                   (x - r * ux + r * vx, y - r * uy + r * vy, False))]
+    edges.append((*start, None))
+    lead = 3 if inside else 2
+    here, ways = start, []
+    for x, y, c in edges:
+        g = f"G3 X{x:.4f} Y{y:.4f} I{c[0] - here[0]:.4f} " \
+            f"J{c[1] - here[1]:.4f}" if c else f"G1 X{x:.4f} Y{y:.4f}"
+        ways, here = ways + [g], (x, y)
+    hole = f"X{-rl} Y{-h / 2 + s * rl:.4f}"
+    back = rnd.choice([f"G40 G1 {hole}",
+                       f"G40 G{5 - lead} {hole} I0 J{s * rl}"])
+    text = ["G90 F5", *[f"H{i + 1}={o}" for i, o in enumerate(offsets)],
+            *[f"G150 H{i + 1} F5" for i in range(len(offsets))],
+            f"G151 P100 {hole}", "G152", "M2", "O100",
+            f"{'G41' if inside else 'G42'} G{lead} X0 Y{-h / 2:.4f} "
+            f"I{rl} J0", *ways, back, "M99", ""]
+    return "\n".join(text), ring_of(start, edges), offsets, inside
+
+
+def test_passes_keep_their_offsets_behind_leads_on_arcs(plain):
+    rnd = contours()
+    for i in range(RUNS):
+        text, square, offsets, inside = passed(rnd)
+        ways, said = ways_of(plain, text)
+        assert ways, f"{i}: {said}\n{text}"
+        path = path_of(ways)
+        assert path.distance(square.exterior) > offsets[-1] - BOUND_MM, text
+        for by in offsets:
+            want = square.buffer(-by if inside else by, 256).exterior
+            assert max(path.distance(want.interpolate(k / 400, True))
+                       for k in range(400)) < BOUND_MM, f"{i}, {by}:\n{text}"
