@@ -7,10 +7,12 @@ docs/panel.md has a table of the OWASP ASVS requirements that these tests show.
 import concurrent.futures
 import json
 import os
+import pathlib
 import socket
 import subprocess
 import time
 
+import numpy as np
 import panel
 import pytest
 import rig
@@ -63,6 +65,40 @@ def test_a_text_that_is_understood_has_a_path_to_draw(p, me):
     assert status == 200 and len(head) % 8 == 0
     assert len(path) == len(head) + told["points"] * (8 + 12 + 4 + 1)
     assert told["max"][2] - told["min"][2] == pytest.approx(2.4)
+
+
+@pytest.mark.parametrize("guides", ["relative", "absolute"])
+def test_the_upper_guide_is_drawn_where_it_is(tmp_path, guides):
+    """Faces of 2 degrees and guides 100 mm apart, whichever way U V count."""
+    ini = tmp_path / "m.ini"
+    ini.write_text(pathlib.Path("examples/wire.ini").read_text().replace(
+        "guides = relative ", f"guides = {guides} "))
+    job = tmp_path / "a.ngc"
+    job.write_text("""G90 F5 H1=0.15
+G0 X105 Y-5
+G41 H1 G51 A2
+G1 X105 Y0
+X100
+Y10
+X110
+Y0
+X105
+G40 G50 Y-5
+M2
+""")
+    with job.open() as text:
+        out = subprocess.run([rig.BUILD / "edm-panel", "--work", "check",
+                              "--config", ini, "--file-name", "a.ngc"],
+                             stdin=text, capture_output=True,
+                             timeout=60).stdout
+    end = out.index(b"\n") + 1
+    told = json.loads(out[:end])
+    n = told["points"]
+    low = np.frombuffer(out, np.float32, 3 * n, end + 8 * n).reshape(n, 3)
+    up = np.frombuffer(out, np.float32, 2 * n, end + 24 * n).reshape(n, 2)
+    off = np.abs(up - low[:, :2] - np.array(told["origin"][:2]))
+    assert told["upper"]
+    assert off.max() == pytest.approx(100 * np.tan(np.radians(2)), abs=0.01)
 
 
 def test_a_job_runs_from_upload_to_end(p, me):
