@@ -30,6 +30,7 @@ enum config_section_id {
 	SECTION_PROBE,
 	SECTION_SPEED,
 	SECTION_CAN402,
+	SECTION_GENERATOR,
 	SECTION_PLC,
 	SECTION_NC,
 	SECTION_TECH,
@@ -174,6 +175,11 @@ int config_check_sim(const struct machine_config *c,
 int config_check_can402(const struct machine_config *c,
 			const struct config_lines *lines,
 			struct interp_diag *diag);
+
+/** config_check_generator() - the same for [generator]. */
+int config_check_generator(const struct machine_config *c,
+			   const struct config_lines *lines,
+			   struct interp_diag *diag);
 
 /** config_check_plc() - the same for [plc]. */
 int config_check_plc(const struct machine_config *c,
