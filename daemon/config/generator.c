@@ -649,8 +649,8 @@ static int check_guard(struct check *q, int line, const char *by,
 	    (at.wired && q->c->backend == BACKEND_GPIO))
 		return 0;
 	interp_diag_say(q->diag, "generator.spark is a line and there is no "
-			"gpio.%s; gpio.%s_by = in your words, what does it", key,
-			key);
+			"gpio.%s; gpio.%s_by = in your words, what does it",
+			key, key);
 	return refuse(q, "spark");
 }
 

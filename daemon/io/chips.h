@@ -17,8 +17,8 @@ struct lines_use {
 	const char *key;		/* of the machine file: "gpio.spark" */
 };
 
-/** lines_chip_named() - open /dev/@name, or the chip with that label.  Return: 0
- *  or -errno. */
+/** lines_chip_named() - open /dev/@name, or the chip with that label.
+ *  Return: 0 or -errno. */
 int lines_chip_named(struct lines_chip **ret, const char *name);
 
 /** lines_chip_refuse() - @diag says that chip @name did @err.  Return: @err. */

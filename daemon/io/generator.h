@@ -4,16 +4,16 @@
  *
  * It is a device of its own: a machine of any backend can have one that is
  * reached by lines, by CAN frames, or by both.  It is put in front of the
- * backend: its outputs are written before those of the axes, and what it says is
- * in io_inputs.generator.
+ * backend: its outputs are written before those of the axes, and what it says
+ * is in io_inputs.generator.
  *
  * Lines are written when they change.  A frame is sent in the period in which
  * it changes, and again at least every REFRESH_S, so that a generator can see
  * that edmd is there.  The usual frame counts in its second byte.
  *
  * A generator that tells its values is believed: what was asked is in force
- * when all that it tells agrees.  It is trouble, until a reset, if it then tells
- * another value, is silent, or does not agree in [generator] confirm_s.
+ * when all that it tells agrees.  It is trouble, until a reset, if it then
+ * tells another value, is silent, or does not agree in [generator] confirm_s.
  *
  * Threads: as in io.h.
  */

@@ -19,12 +19,12 @@
 struct generator_frame {
 	struct can_msg sent;		/* as it was sent last */
 	bool counts;			/* in its second byte */
-	uint32_t age;			/* periods since; the refresh: at once */
+	uint32_t age;			/* periods since; refresh: now */
 };
 
 enum generator_note_kind {
-	GENERATOR_SILENT, GENERATOR_DIFFERS, GENERATOR_LATE, GENERATOR_LINES_LOST,
-	GENERATOR_BUS_DOWN, GENERATOR_BUS_BACK
+	GENERATOR_SILENT, GENERATOR_DIFFERS, GENERATOR_LATE,
+	GENERATOR_LINES_LOST, GENERATOR_BUS_DOWN, GENERATOR_BUS_BACK
 };
 
 struct generator_note {

@@ -13,7 +13,7 @@
 struct slow {
 	double now[INTERP_NGENERATOR], next[INTERP_NGENERATOR];
 	uint32_t asked;
-	int left;			/* periods until next is now; -1: it is */
+	int left;			/* periods until next; -1: it has */
 	uint64_t seed;
 	int most;			/* periods that it needs */
 	int dark;			/* periods without sparks */
@@ -117,6 +117,7 @@ static void check_spark(const struct rig *r, struct slow *g)
 static void generate(struct rig *r, struct slow *g)
 {
 	if (r->out.asked != g->asked) {
+		assert_true(g->dark >= 1 + (g->sparks > 0));
 		if ((r->out.pulse[INTERP_TECH_POLARITY] < 0) !=
 		    (g->next[INTERP_TECH_POLARITY] < 0))
 			assert_true(g->dark >= DARK);
@@ -141,9 +142,10 @@ static struct slow slow_of(uint64_t seed, int most)
 	return g;
 }
 
+/* Where it waits for the generator, there is no voltage on the gap. */
 static void period(struct rig *r, struct slow *g, double gap_v)
 {
-	step(r, gap_v);
+	step(r, asking_waits(&r->c) ? 0 : gap_v);
 	check_spark(r, g);
 	generate(r, g);
 }
@@ -151,7 +153,9 @@ static void period(struct rig *r, struct slow *g, double gap_v)
 /* A gap that is mostly good, and an operator who holds and goes back. */
 static void random_period(struct rig *r, struct slow *g)
 {
-	static const double volts[] = { SPARKING_V, OPEN_V, NARROW_V, SHORTED_V };
+	static const double volts[] = {
+		SPARKING_V, OPEN_V, NARROW_V, SHORTED_V
+	};
 	const uint64_t x = rnd(&g->seed) % 1000;
 	const bool stands = r->c.state == STATE_HOLD && !r->c.hold.moving;
 
@@ -328,7 +332,7 @@ static void a_set_that_does_not_reach_the_generator_is_refused(void **state)
 			 CONDITIONS_BAD);
 	assert_int_equal(conditions_set(&r.c, INTERP_TECH_PEAK_A, 20),
 			 CONDITIONS_DONE);
-	step(&r, SPARKING_V);
+	steps(&r, SPARKING_V, 2);
 	assert_false(r.out.power);
 	assert_true(r.out.pulse[INTERP_TECH_PEAK_A] == 18);
 	rig_free(&r);

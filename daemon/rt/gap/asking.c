@@ -106,13 +106,23 @@ static bool turns_round(const struct cycle *c)
 	return (wanted(c, INTERP_TECH_POLARITY) < 0) != (now < 0);
 }
 
+/* Nothing of it changes in the period in which the sparks go off: that may take
+ * another way, and longer. */
+static bool is_dark(const struct cycle *c)
+{
+	const uint64_t least = turns_round(c) ?
+			       c->config.asking.polarity_cycles : 0;
+
+	return c->asking.dark > 0 && c->asking.dark >= least;
+}
+
 static void ask(struct cycle *c)
 {
 	struct asking *a = &c->asking;
 	double off_us;
 
 	if (!is_the_places(c)) {
-		if (turns_round(c) && a->dark < c->config.asking.polarity_cycles)
+		if (!is_dark(c))
 			return;
 		for (int i = 0; i < INTERP_NGENERATOR; i++)
 			a->now[i] = a->place[i] = wanted(c, i);

@@ -5,10 +5,10 @@
  * The condition of the place where there will be sparks is turned into values
  * that the generator can do.  A jump or a retract over a change of condition
  * asks for nothing new: the place where it ends counts.  Each change of what a
- * place needs has a version.  It is in force when the generator has said so, or,
- * if it cannot, after settle_cycles.  There are no sparks before, forward and on
- * the way back; the machine stands at the place and waits.  A longer off time
- * against arcs is asked for while the sparks go on.
+ * place needs has a version.  It is in force when the generator has said so,
+ * or, if it cannot, after settle_cycles.  There are no sparks before, forward
+ * and on the way back; the machine stands at the place and waits.  A longer off
+ * time against arcs is asked for while the sparks go on.
  *
  * A field that a person sets makes the job stand where it changes.  The start
  * that follows says that it is set.
