@@ -82,9 +82,11 @@ def test_a_condition_that_does_not_reach_the_generator_is_refused(tmp_path):
     p = run("--machine", EXAMPLES / "machine-gpio.ini", "--check",
             text=CALLS)
     assert p.returncode == 65
-    told = p.stderr.decode()
-    assert "-:1:9: error: the pump, which nothing switches on" in told
-    assert "-:2:1: error: a negative electrode: polarity -1" in told
+    assert b"-:1:9: error: the pump, which nothing switches on" in p.stderr
+    p = run("--machine", EXAMPLES / "machine-gpio.ini", "--check",
+            text=CALLS.replace(" T84", ""))
+    assert p.returncode == 65
+    assert b"-:2:1: error: a negative electrode: polarity -1" in p.stderr
 
 
 def test_edmd_refuses_it_too(tmp_path):
