@@ -130,7 +130,8 @@ static void generator_read(void *self, struct io_inputs *in)
 		generator_can_read(g);
 	look(g);
 	in->generator = g->says;
-	in->generator.trouble = g->says.trouble || g->down;
+	/* Where the bus is the drives' too, it is their trouble. */
+	in->generator.trouble = g->says.trouble || (g->down && !g->ill);
 }
 
 /* -- What it is asked for -------------------------------------------------- */

@@ -39,18 +39,6 @@ refused rights nobody
 ctl doctor --pulses gpiochip0:9 > pulses 2>&1
 echo $? > pulses.rc
 
-# A generator on lines, in a gap that stays open.
-cp levels.tech $R/
-pull sim0 20 up
-edmd_start $R/edmd generator.ini
-jobs_start generator.ini
-trace_start "gpio>=$(base sim1) && gpio<$(($(base sim1) + 8))"
-ctl submit --wait levels.ngc > generator 2>&1
-echo $? > generator.rc
-trace_end sim1 generator.trace
-daemons_end generator
-pull sim0 20 down
-
 # Switches: each is its fault; sparks and pump are off by then.
 pull sim0 20 up
 edmd_start $R/edmd gap.ini
