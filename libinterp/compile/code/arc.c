@@ -75,7 +75,7 @@ static double rounded_mm(double digit_mm)
 	return digit_mm * M_SQRT1_2;
 }
 
-/* An end and a centre; where the top of a wire leans, those of the bottom too. */
+/* An end and a centre; if the top of a wire leans, those of the bottom too. */
 #define RING_PLACES	4
 
 /* Ends of an arc in its plane, and its centre. */

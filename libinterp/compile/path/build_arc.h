@@ -56,7 +56,7 @@ enum build_arc_ends {
 enum build_arc_ends build_arc_even(struct build_arc *p,
 				   struct interp_build_arc *word);
 
-/** build_arc_plan() - of a shape: 0, or -EINVAL with @diag's found and wanted. */
+/** build_arc_plan() - of a shape: 0, or -EINVAL with @diag said. */
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag);
 
 /** build_arc_kept() - numbers that the program keeps of a planned arc: its runs
