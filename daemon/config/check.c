@@ -280,6 +280,7 @@ int config_check(const struct machine_config *c,
 		return -EINVAL;
 	return check_period(&q) || check_present(&q) || check_lines(&q) ||
 	       check_guides(&q) ||
+	       config_check_generator(c, lines, diag) ||
 	       config_check_plc(c, lines, diag) ||
 	       config_check_sim(c, lines, diag) ||
 	       check_orders_if_set(&q) || check_jump(&q, "height_mm") ||

@@ -118,6 +118,23 @@ static void generator_of(const struct machine_config *m,
 	g->off_us = or_own(g->off_us, sim ? m->sim.off_us : 0);
 }
 
+static void asking_of(const struct machine_config *m, struct cycle_config *c)
+{
+	const struct config_generator *g = &m->generator;
+	struct asking_config *a = &c->asking;
+
+	a->limited = config_generator_limits(m);
+	a->settle_cycles = cycles_of(g->settle_ms * 1e-3, c->period_ns);
+	a->polarity_cycles = cycles_of(g->polarity_ms * 1e-3, c->period_ns);
+	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+		struct config_way told;
+
+		config_delivers(m, i, &a->field[i]);
+		config_way(m, i, true, &told);
+		a->answers = a->answers || told.kind != WAY_NONE;
+	}
+}
+
 static void manual_of(const struct machine_config *c, int axis,
 		      struct manual_axis *ret)
 {
@@ -188,6 +205,7 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 	interp_machine_travel(&c->axes, &ret->travel_a_mm_s2,
 			      &ret->travel_j_mm_s3);
 	generator_of(c, &ret->gap);
+	asking_of(c, ret);
 
 	/* Round inward: to the last pulse inside the limit, never to the first
 	 * outside. */

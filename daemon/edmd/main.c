@@ -2,6 +2,7 @@
 /*
  * main.c - edmd: start, run, end in the reverse order
  */
+#include "generator.h"
 #include "key.h"
 #include "logger.h"
 #include "log.h"
@@ -45,10 +46,15 @@ static int machine_open(struct loop *l, const struct machine_config *c)
 	static io_open_fn *const open[] = { CONFIG_BACKENDS(BACKEND_OPEN) };
 	struct interp_diag diag = { .found = "the machine cannot be opened",
 				    .wanted = "more free memory" };
-	const int err = open[c->backend](&l->io, c, &diag);
+	int err = open[c->backend](&l->io, c, &diag);
 
 	if (err < 0)
 		return machine_refuse(err, &diag);
+	err = io_generator_open(&l->io, c, &diag);
+	if (err < 0) {
+		l->io.close(l->io.self);
+		return machine_refuse(err, &diag);
+	}
 	if (l->io.edges_per_cycle)
 		l->cycle.config.points_max = l->io.edges_per_cycle;
 	return EX_OK;

@@ -194,6 +194,7 @@ void loop_notice(struct loop *l)
 	l->told.state = c->state;
 	l->told.outcome = c->outcome;
 	l->told.hunts = c->totals.hunts;
+	l->told.hand = c->asking.stands;
 	notice_faults(l);
 	if (c->state != was.state)
 		loop_event(l, SHM_EV_STATE, 0, (int32_t)c->state);
@@ -203,6 +204,8 @@ void loop_notice(struct loop *l)
 	}
 	if (c->totals.hunts > was.hunts && is_power_of_ten(c->totals.hunts))
 		loop_event(l, SHM_EV_HUNTING, 0, (int32_t)c->retract.in_row);
+	if (c->asking.stands && !was.hand)
+		loop_event(l, SHM_EV_HAND, c->asking.stands, 0);
 	notice_condition(l);
 }
 

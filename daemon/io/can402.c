@@ -343,27 +343,6 @@ static void reset(struct can402 *s)
 	}
 }
 
-static uint32_t tenths(double x)
-{
-	return x >= 0 && x < 6553.4 ? (uint32_t)(x * 10 + 0.5) : 0xffff;
-}
-
-static void tell_generator(struct can402 *s, bool safe)
-{
-	const struct io_outputs *o = &s->out;
-	struct can_msg m = { .id = (uint16_t)s->c.generator_id, .len = 8 };
-
-	if (s->c.generator_id == 0)
-		return;
-	m.data[0] = (uint8_t)((o->power && safe) | (o->pump && safe) << 1 |
-			      io_is_negative(o) << 2);
-	m.data[1] = s->count++;
-	can_put(m.data + 2, tenths(o->pulse[INTERP_TECH_PEAK_A]), 2);
-	can_put(m.data + 4, tenths(o->pulse[INTERP_TECH_ON_US]), 2);
-	can_put(m.data + 6, tenths(o->pulse[INTERP_TECH_OFF_US]), 2);
-	send(s, &m);
-}
-
 static void tell_drive(struct can402 *s, uint32_t i, enum drive_goal goal)
 {
 	const bool braking = s->stopping > 0 ||
@@ -387,7 +366,6 @@ void can402_write(void *self, const struct io_outputs *out)
 	s->out = *out;
 	if (out->reset)
 		reset(s);
-	tell_generator(s, trouble(s) == IO_WELL);
 	on = can402_stop_step(s, out->enable && !s->stopped);
 	on = can402_brake_step(s, on);
 	for (uint32_t i = 0; i < s->n; i++)
@@ -400,7 +378,6 @@ static void leave(struct can402 *s)
 	struct can_msg m[DRIVE_ENDS];
 
 	s->out.enable = s->were_on = false;
-	s->out.power = s->out.pump = false;
 	s->stopping = 0;
 	can402_write(s, &s->out);
 	send(s, &sync_frame);

@@ -81,7 +81,6 @@ struct can402 {
 	void *brake_arg;
 	bool placed;			/* the drives' zeros are set */
 	struct io_outputs out;
-	uint8_t count;
 	double gap_v;
 	struct io_shares shares;
 	bool has_shares;

@@ -52,7 +52,7 @@ static int check_load(const struct machine_config *c, struct interp_diag *diag)
 		.bitrate = (uint32_t)(c->can402.bitrate_kbit * 1000),
 		.heartbeat_ms = (uint32_t)c->can402.heartbeat_ms,
 		.gap = c->can402.gap_id > 0,
-		.generator = c->can402.generator_id > 0,
+		.generator = config_generator_frames(c, c->can402.interface),
 	};
 	const double us = (double)config_period_ns(c) * 1e-3;
 	double load;

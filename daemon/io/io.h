@@ -52,6 +52,13 @@ struct io_plc {
 	double axes_c;			/* temperature of axes; 0: unknown */
 };
 
+/* What a generator says of what it was asked for. */
+struct io_generator {
+	uint32_t in_force;		/* io_outputs.asked that is; counts if
+					 * it can tell */
+	bool trouble;			/* until a reset */
+};
+
 /* What the machine says, once a period. */
 struct io_inputs {
 	double gap_v;			/* mean voltage over the last period */
@@ -87,6 +94,7 @@ struct io_inputs {
 	int32_t ran_on[IO_NAXES];	/* pulses that they may have run on by
 					 * themselves when they were stopped */
 	struct io_plc plc;
+	struct io_generator generator;
 	int32_t actual[IO_NAXES];	/* pulses, measured or last written */
 };
 
@@ -108,6 +116,7 @@ struct io_outputs {
 	double pulse[INTERP_NGENERATOR];	/* asked of the generator, by
 					 * enum interp_tech_id; NAN: its own
 					 * setting */
+	uint32_t asked;			/* another number: pulse has changed */
 	double off_path_mm;		/* way that an escape has led away from
 					 * the path; 0: on the path */
 };

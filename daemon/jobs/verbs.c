@@ -339,6 +339,24 @@ static void refuse_field(struct jobs *j, const struct jobs_lcm_command *c)
 	verbs_answer(j, c, EX_DATAERR, reason);
 }
 
+/* Does a value of the generator reach it?  Otherwise it is refused. */
+static bool reaches(struct jobs *j, const struct jobs_lcm_command *c,
+		    enum interp_tech_id id)
+{
+	struct interp_diag why;
+	struct interp_tech t;
+	char reason[420];
+
+	interp_tech_clear(&t);
+	t.v[id] = c->arg;
+	if (!interp_tech_value_ok(id, c->arg) ||
+	    config_generator_takes(j->config, &t, "set", &why) == 0)
+		return true;
+	snprintf(reason, sizeof(reason), "%s; %s", why.found, why.wanted);
+	verbs_answer(j, c, EX_DATAERR, reason);
+	return false;
+}
+
 /* NaN removes the set value; the condition's own value is valid again. */
 static void verb_set(struct jobs *j, const struct verb *v,
 		     const struct jobs_lcm_command *c)
@@ -352,6 +370,8 @@ static void verb_set(struct jobs *j, const struct verb *v,
 		return;
 	}
 	interp_tech_range((enum interp_tech_id)id, range, sizeof(range));
+	if (!reaches(j, c, (enum interp_tech_id)id))
+		return;
 	if (id == INTERP_TECH_JUMP_MM)
 		fits = config_jump_fits(j->config, c->arg, range,
 					sizeof(range));

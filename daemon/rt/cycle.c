@@ -24,6 +24,7 @@ void cycle_init(struct cycle *c, const struct cycle_config *config)
 		.plc_override = NAN,
 	};
 	io_pulse_own(&c->out);
+	asking_init(&c->asking);
 	memcpy(c->out.target, config->start, sizeof(c->out.target));
 }
 
@@ -89,6 +90,11 @@ static enum cycle_event look(struct cycle *c)
 {
 	const bool powered = state_duty[c->state].power;
 
+	if (asking_hand(c))
+		return EVENT_HOLD;
+	if (asking_waits(c))
+		return !escape_is_out(&c->escape) && walk_positions(c) ?
+		       EVENT_FREE : EVENT_NONE;
 	if (powered && c->sensed.is_short)
 		return EVENT_SHORT;
 	if (powered && !escape_is_out(&c->escape) && walk_positions(c))
@@ -230,7 +236,8 @@ static void sum_up(struct cycle *c, bool running)
 static bool may_spark(const struct cycle *c)
 {
 	return state_duty[c->state].power && !c->job.power_off &&
-	       c->fault.latched == 0 && !walk_positions(c);
+	       c->fault.latched == 0 && !walk_positions(c) &&
+	       c->asking.in_force;
 }
 
 /* Does a command move the axes?  Then their compensation may move them too. */
@@ -268,7 +275,8 @@ static void give(struct cycle *c, struct io_outputs *out)
 	for (int i = 0; i < INTERP_NAXES && c->contouring.on; i++)
 		out->target[i] += c->contouring.added[i];
 	resync_apply(c, out->target);
-	out->pulse[INTERP_TECH_OFF_US] = arcing_off_us(c);
+	memcpy(out->pulse, c->asking.now, sizeof(out->pulse));
+	out->asked = c->asking.version;
 	c->out.reset = false;
 }
 
@@ -341,5 +349,6 @@ void cycle_step(struct cycle *c, const struct io_inputs *in,
 	if (!c->overran)
 		c->overruns_in_row = 0;
 	c->overran = false;
+	asking_step(c, in);
 	give(c, out);
 }

@@ -21,6 +21,7 @@
 
 #include "interp/cursor.h"
 #include "gap/arcing.h"
+#include "gap/asking.h"
 #include "axes/axes.h"
 #include "axes/comp.h"
 #include "axes/contouring.h"
@@ -82,6 +83,7 @@ struct cycle_config {
 	struct comp_config comp;
 	struct contouring_config contouring;
 	struct resync_config resync;
+	struct asking_config asking;
 };
 
 /* The verbs of words/verbs.h: CYCLE_START and so on. */
@@ -220,6 +222,7 @@ struct cycle {
 	struct retract retract;		/* the one under way, or the last */
 	struct servo servo;
 	struct arcing arcing;
+	struct asking asking;
 	struct flush flush;
 	struct probe probe;
 	struct mover mover;		/* speed along the path or the escape */

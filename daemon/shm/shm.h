@@ -190,6 +190,9 @@ enum shm_event_kind {
 	SHM_EV_SET,			/* id: the field, enum interp_tech_id */
 	SHM_EV_SELECT,			/* by the PLC; code: job n */
 	SHM_EV_HUNTING,			/* code: retracts in a row */
+	SHM_EV_HAND,			/* it stands until a person has set
+					 * fields; id: a bit of each, enum
+					 * interp_tech_id */
 };
 
 struct shm_event {

@@ -4,6 +4,7 @@
  * at the other end are drives, a gap sensor, and others that talk
  */
 #include "can402_bus.h"
+#include "generator_own.h"
 
 #include <errno.h>
 #include <linux/can.h>
@@ -38,6 +39,7 @@ struct rig {
 	struct io_outputs out;
 	int fd;				/* the other end; -1: cut */
 	struct peer p[NDRIVES];		/* nodes 1, 2: axes X, Y */
+	int generator_fd;		/* its bus, another one */
 	struct can_frame generator;	/* its last frame */
 	uint32_t syncs, sdos;
 	bool beats;			/* they send heartbeats */
@@ -67,14 +69,25 @@ static void make(struct rig *r)
 	r->c.drive[INTERP_X].increments = 10;
 	r->c.can402.resync_mm = 0.5;
 	r->c.can402.gap_id = GAP;
-	r->c.can402.generator_id = GENERATOR;
+	r->c.generator.interface = GENERATOR_CAN;
+	r->c.generator.can_id = GENERATOR;
 	assert_int_equal(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0,
 				    fd), 0);
 	assert_int_equal(can402_attach(&r->m, &r->c, fd[0]), 0);
 	r->fd = fd[1];
+	assert_int_equal(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0,
+				    fd), 0);
+	assert_non_null(generator_attach(&r->m, &r->c, fd[0]));
+	r->generator_fd = fd[1];
 	r->beats = true;
 	for (int i = 0; i < NDRIVES; i++)
 		r->p[i] = (struct peer) { .status = 0x40, .actual = 777 };
+}
+
+/* The generator stands in front of it. */
+static struct can402 *master(struct rig *r)
+{
+	return ((struct generator *)r->m.self)->axes.self;
 }
 
 static void unmake(struct rig *r)
@@ -82,6 +95,7 @@ static void unmake(struct rig *r)
 	r->m.close(r->m.self);
 	if (r->fd >= 0)
 		close(r->fd);
+	close(r->generator_fd);
 }
 
 static void obey(struct peer *p)
@@ -190,6 +204,8 @@ static void period(struct rig *r)
 	r->m.write(r->m.self, &r->out);
 	r->out.reset = false;
 	while (r->fd >= 0 && read(r->fd, &f, sizeof(f)) == sizeof(f))
+		on_frame(r, &f);
+	while (read(r->generator_fd, &f, sizeof(f)) == sizeof(f))
 		on_frame(r, &f);
 }
 
@@ -401,7 +417,7 @@ static void what_is_stopped_brakes_along_the_path(void **st)
 	(void)st;
 	begin(&r);
 	for (int i = 0; i < NDRIVES; i++)
-		((struct can402 *)r.m.self)->stop[i].a /= 10;
+		master(&r)->stop[i].a /= 10;
 	for (int i = 1; i <= 200; i++) {
 		r.out.target[INTERP_X] = 8 * i;
 		r.out.target[INTERP_Y] = 4 * i;
@@ -487,7 +503,7 @@ static void begin_braked(struct rig *r)
 	begin(r);
 	r->out.enable = r->out.power = false;
 	run(r, 20);
-	s = r->m.self;
+	s = master(r);
 	s->braked = 1 << INTERP_Y;
 	s->brake = brake;
 	s->brake_periods = BRAKE_PERIODS;
@@ -588,7 +604,7 @@ static void a_plc_on_the_same_bus_is_no_other_master(void **st)
 
 	(void)st;
 	begin(&r);
-	((struct can402 *)r.m.self)->plc_node = 32;
+	master(&r)->plc_node = 32;
 	put(&r, CAN_NMT, "\x01\x20", 2);
 	put(&r, CAN_NMT, "\x02\x20", 2);
 	put(&r, CAN_NMT, "\x01\x00", 2);
@@ -612,7 +628,7 @@ static void drives_that_a_plc_starts_too_early_are_set_up_all_the_same(
 
 	(void)st;
 	make(&r);
-	s = r.m.self;
+	s = master(&r);
 	s->plc_node = 32;
 	run(&r, 20);
 	assert_true(s->drive[0].step > 5);
@@ -965,7 +981,10 @@ static void it_leaves_the_drives_stopped_and_quiet(void **st)
 		assert_int_not_equal(r.p[i].status, 0x1027);
 		assert_int_equal(r.p[i].actual, 777);
 	}
+	while (read(r.generator_fd, &f, sizeof(f)) == sizeof(f))
+		on_frame(&r, &f);
 	assert_int_equal(r.generator.data[0], 0);
+	close(r.generator_fd);
 	close(r.fd);
 }
 

@@ -95,14 +95,35 @@ static int run_mcode_after(struct nc_reader *r)
 	return nc_run_mcode(r, NC_MCODE_AFTER);
 }
 
+/* M3 too, but an electrode that nothing makes negative is positive. */
+static int check_polarity(struct nc_reader *r)
+{
+	struct interp_tech t;
+
+	if (r->block.code[NC_POWER]->value != INTERP_AUX_POWER_NEGATIVE)
+		return 0;
+	interp_tech_clear(&t);
+	t.v[INTERP_TECH_POLARITY] = -1;
+	return nc_refuse_undelivered(r, &t, "a negative electrode",
+				     r->block.code_at[NC_POWER]);
+}
+
 static int run_power(struct nc_reader *r)
 {
+	if (check_polarity(r))
+		return -EINVAL;
 	return nc_action(r, INTERP_AUX, r->block.code[NC_POWER]->value,
 			 r->block.code_at[NC_POWER]);
 }
 
 static int run_pump(struct nc_reader *r)
 {
+	const struct interp_delivery *d = r->o->delivery;
+
+	if (d && d->no_pump &&
+	    r->block.code[NC_PUMP]->value == INTERP_AUX_PUMP_ON)
+		return nc_refuse(r, r->block.code_at[NC_PUMP], d->no_pump,
+				 "the pump, which nothing switches on");
 	return nc_action(r, INTERP_AUX, r->block.code[NC_PUMP]->value,
 			 r->block.code_at[NC_PUMP]);
 }

@@ -461,6 +461,11 @@ static inline bool nc_has_guides(const struct nc_reader *r)
 	return guides_on(&r->contour.guides);
 }
 
+/** nc_refuse_undelivered() - does all that @t gives reach the generator?
+ *  Return: 0, or it is refused: @who is named. */
+int nc_refuse_undelivered(struct nc_reader *r, const struct interp_tech *t,
+			  const char *who, const uint8_t *at);
+
 /** nc_call_condition() - call it from here on; the word is at @at. */
 int nc_call_condition(struct nc_reader *r, char letter, uint32_t number,
 		      const uint8_t *at);

@@ -113,6 +113,17 @@ static int take_column(struct nc_reader *r, struct nc_defined *d,
 			 column + 1, interp_tech_field[id].name, value);
 }
 
+int nc_refuse_undelivered(struct nc_reader *r, const struct interp_tech *t,
+			  const char *who, const uint8_t *at)
+{
+	const struct interp_delivery *d = r->o->delivery;
+	struct interp_diag why;
+
+	if (!d || d->takes(d->arg, t, who, &why) == 0)
+		return 0;
+	return nc_refuse(r, at, why.wanted, "%s", why.found);
+}
+
 static int check_definition(struct nc_reader *r, const struct nc_defined *d,
 			    uint32_t columns, const uint8_t *at)
 {
@@ -137,7 +148,9 @@ static int check_definition(struct nc_reader *r, const struct nc_defined *d,
 			     interp_tech_name(d->letter, d->number, name,
 					      sizeof(name)), &why))
 		return nc_refuse(r, at, why.wanted, "%s", why.found);
-	return 0;
+	return nc_refuse_undelivered(r, &d->tech,
+				     interp_tech_name(d->letter, d->number,
+						      name, sizeof(name)), at);
 }
 
 /* Conditions that were called before keep the values with which they were

@@ -196,6 +196,7 @@ export const zhFaults: Record<Fault, FaultWords> = {
 	"fire": { what: "起火", why: "PLC 的火焰探测器报告", clear: `灭火;${RESET}` },
 	"m-code": { what: "PLC 没有及时执行 M 代码", why: "m_timeout_s 内没有应答", clear: "复位;启动会再次等待应答,结束任务放弃" },
 	"stuck": { what: "运动停住而没有原因", why: "应当移动,没有东西阻止,一秒钟没有走一个格点:路径或 edmd 的缺陷", clear: "连同程序一起报告;复位;启动重试,结束任务放弃" },
+	"generator": { what: "脉冲电源没有条件所要求的值", why: "它不应答、报告的值与要求的不同,或者它的线没有响应;edmd 的日志写明是哪个字段、要求什么、报告什么", clear: "检查脉冲电源和电缆;复位;启动继续,停止结束任务" },
 };
 
 export const zhHunting = "提高 servo_v,降低 feed_gain_mm_s_v,或更频繁地抬刀(减小 [jump] every_s);edmsim --tune 可求得数值。";
