@@ -52,7 +52,7 @@ struct edges {
 	int32_t held_at[IO_NAXES];	/* target when a stop was told */
 	bool held;
 	int64_t slot_at_ns;		/* the last slot began then or before */
-	int64_t changed_ns;		/* the levels changed then or before */
+	int64_t changed_ns;		/* slot_at_ns of the last change */
 	int pin_err, rank_err;		/* errno of its rights */
 	bool noted;
 	sem_t ready;
@@ -243,7 +243,7 @@ static bool write_lines(struct edges *e, int64_t woke_ns)
 	const int64_t end_ns = clock_ns(CLOCK_MONOTONIC);
 
 	e->slot_at_ns = end_ns - quickest_of(&e->quickest, end_ns - woke_ns);
-	e->changed_ns = end_ns;
+	e->changed_ns = e->slot_at_ns;
 	return ok;
 }
 

@@ -200,6 +200,7 @@ static void the_thread_and_the_cycle_run_half_a_period_apart(void **state)
 	}
 }
 
+/* Counted as slots are, so a write quicker than those before is left off. */
 static void levels_last_as_long_as_the_file_says(void **state)
 {
 	struct edges_config c = {
@@ -219,7 +220,7 @@ static void levels_last_as_long_as_the_file_says(void **state)
 	settle(&r);
 	edges_end(r.e);
 	assert_int_equal(r.at[0], 30);
-	assert_true(r.least_ns >= 2 * SLOT_NS);
+	assert_true(r.least_ns > 2 * SLOT_NS - SLOT_NS / 4);
 }
 
 static void a_right_that_the_host_does_not_give_is_told(void **state)
