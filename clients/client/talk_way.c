@@ -63,7 +63,9 @@ static int join(struct talk_way *w, const char *url, bool named, char *said)
 
 	wrong = udpm_url_read(&at, url);
 	if (wrong) {
-		snprintf(said, TALK_SAID_MAX, "URL %s: %s", url, wrong);
+		snprintf(said, TALK_SAID_MAX, "%s %s; %s; such as "
+			 TALK_URL, named ? "--url" : "LCM_DEFAULT_URL",
+			 url, wrong);
 		return -EDESTADDRREQ;
 	}
 	err = udpm_open(&w->net, &at);

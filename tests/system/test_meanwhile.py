@@ -79,6 +79,7 @@ def select(tmp_path, machine):
         ["cc", "-D_GNU_SOURCE", "-o", tool, HERE / "select_job.c",
          *(ROOT / "daemon/shm").glob("*.c"), ROOT / "common/names.c",
          ROOT / "common/places.c",
+         ROOT / "common/thread.c",
          *(f"-I{ROOT / d}" for d in ("daemon/shm", "daemon/words", "common",
                                      "libinterp/core/include"))], check=True)
     return lambda n: subprocess.run(

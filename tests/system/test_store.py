@@ -148,6 +148,7 @@ def test_a_disk_that_fails_in_a_cut_stops_nothing(failing, number):
     c.status_where(lambda s: s.daemon == "ok")
     assert c.job("cut")["state"] == "done"
     # Killed while it was being loaded, it waits for a start.
+    rig.until(lambda: c.job("behind")["state"] in ("ready", "done"))
     if c.job("behind")["state"] != "done":
         c.ask("start")
     c.job_where("behind", "done")
