@@ -109,8 +109,8 @@ SIM	:= $(wildcard clients/sim/*.c)
 CTL	:= $(wildcard clients/ctl/*.c)
 PLOT	:= $(wildcard clients/plot/*.c)
 PLAN	:= $(wildcard clients/plan/*.c)
-# The one library for which a little C++ is needed.
-OMPL	:= clients/plan/corridor.cc
+# The two libraries for which a little C++ is needed: OMPL and Eigen.
+PLAN_CC	:= $(wildcard clients/plan/*.cc)
 PANEL_C	:= $(wildcard clients/panel/*.c)
 SHEETS	:= $(wildcard clients/plot/*.gp)
 UNIT	:= $(wildcard tests/unit/test_*.c)
@@ -136,7 +136,7 @@ INC_compiling	= -Idaemon/compiling -Idaemon/config $(WORDS_H) $(CORE_H) $(COMPIL
 INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
 INC_values	= -Idaemon/values -Idaemon/shm $(INC_compiling)
 INC_setup	= -Idaemon/setup -Icommon
-INC_logger	= -Idaemon/logger -Imessages/sign
+INC_logger	= -Idaemon/logger -Icommon -Imessages/sign
 INC_edmd	= -Idaemon/edmd $(INC_logger) -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
 INC_jobs	= -Idaemon/jobs $(INC_logger) -Icommon $(WORDS_H) $(INC_values) $(MODEL_H) -Imessages/sign -I$(B)/messages
 INC_sign	= -Imessages/sign -Icommon
@@ -147,7 +147,7 @@ INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE
 INC_panel	= -Iclients/panel -Icommon $(WORDS_H) $(INC_values) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_plan	= -Iclients/plan -Icommon $(INC_config) $(INC_compiling)
-INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan -Iclients/panel
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
 part = $(if $(filter common,$(firstword $(subst /, ,$1))),common,$(word 2,$(subst /, ,$1)))
@@ -160,15 +160,17 @@ TRIED_A	 := $(B)/tests-tried.a
 COMMON_A := $(B)/common.a
 INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A) $(COMMON_A)
 WORDS_O	 := $(call obj,$(WORDS))
-RT_O	 := $(call obj,$(RT)) $(WORDS_O)
+# Prints, which the cycle must not.
+TEXT_O	 := $(B)/daemon/words/process_text.o
+RT_O	 := $(call obj,$(RT)) $(filter-out $(TEXT_O),$(WORDS_O))
 IO_O	 := $(call obj,$(IO))
-SIM_IO_O := $(filter-out %/can402_lines.o %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o,$(IO_O))
+SIM_IO_O := $(filter-out %/can402_lines.o %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o %/chips.o %/generator_lines.o %/generator_open.o,$(IO_O))
 LINES_O	 := $(filter %/gpiod1.o %/gpiod2.o,$(IO_O))
-CONFIG_O := $(call obj,$(CONFIG))
+CONFIG_O := $(call obj,$(CONFIG)) $(TEXT_O)
 COMPILING_O := $(call obj,$(COMPILING))
 SHM_O	 := $(call obj,$(SHM)) $(WORDS_O)
 SIGN_O	 := $(call obj,$(SIGN))
-LOGGER_O	 := $(call obj,$(LOGGER)) $(B)/messages/sign/plain.o
+LOGGER_O	 := $(call obj,$(LOGGER)) $(B)/common/plain.o
 SETUP_O	 := $(call obj,$(SETUP))
 LCM_O	 := $(B)/messages/edm_lcm.o
 DDS_O	 := $(B)/messages/edm.o
@@ -324,9 +326,9 @@ $(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c 
 	$(call link,-lddsc -ljansson -lm)
 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(VALUES) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
-	$(call link,-lwebsockets -linih -llcm -lsodium -ljansson -lsystemd -lm)
+	$(call link,-lwebsockets -lssl -linih -llcm -lsodium -ljansson -lsystemd -lm)
 
-$(B)/edm-plan: $(call obj,$(PLAN)) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
+$(B)/edm-plan: $(call obj,$(PLAN)) $(PLAN_CC:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
 	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
 # Of edm-plan, without its main().
@@ -336,7 +338,10 @@ PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c \
 
 $(B)/unit/test_plan_core $(B)/unit/test_plan_bounds $(B)/unit/test_plan_near: $(PLAN_CORE)
 
-$(B)/unit/test_corridor: $(OMPL:%.cc=$(B)/%.o)
+$(B)/unit/test_plan_lp: $(call obj,clients/plan/lp.c)
+$(B)/unit/test_plan_lp: UNIT_LIBS = -lglpk
+
+$(B)/unit/test_corridor: $(PLAN_CC:%.cc=$(B)/%.o)
 $(B)/unit/test_corridor: UNIT_LIBS = -lompl -lstdc++
 
 # Of edmd itself, without its main().
@@ -357,6 +362,10 @@ $(B)/unit/test_store $(B)/unit/test_store_electrode $(B)/unit/test_store_turn: U
 $(B)/unit/test_checkpoint: $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/checkpoint.c daemon/jobs/checkpoint_block.c) daemon/jobs/jobs_log.c)
 $(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
 
+$(B)/unit/test_share: $(call obj,clients/panel/share.c)
+$(B)/unit/test_frames: $(call obj,clients/panel/frames.c)
+$(B)/unit/test_frames: UNIT_LIBS = -lssl
+
 # The sockets and the lines of an encoder are the test's own.
 $(B)/unit/test_can_queue: UNIT_LIBS = -Wl,--wrap=can_socket_open
 # Looks at a program are counted.
@@ -367,7 +376,7 @@ $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) 
 	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
 
 $(B)/tests/bench/plan.o: INC_bench += -Iclients/plan
-$(B)/bench/plan: $(B)/tests/bench/plan.o $(filter-out %/main.o,$(call obj,$(PLAN))) $(OMPL:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
+$(B)/bench/plan: $(B)/tests/bench/plan.o $(filter-out %/main.o,$(call obj,$(PLAN))) $(PLAN_CC:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
 	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
 $(B)/bench/wait: $(SETUP_O)
@@ -452,8 +461,8 @@ check:
 	@tests/stage check panel
 	@$(MAKE) --no-print-directory panel
 	@tests/stage check tests
-	@EDM_BUILD=$(B) EDM_SEED=1 tests/netns .venv/bin/pytest -q $(PANEL_TESTS)
-	@EDM_BUILD=$(B) EDM_SEED=1 tests/netns .venv/bin/pytest -q \
+	@EDM_BUILD=$(B) EDM_SEED=1 $(NETNS) .venv/bin/pytest -q $(PANEL_TESTS)
+	@EDM_BUILD=$(B) EDM_SEED=1 $(NETNS) .venv/bin/pytest -q \
 		-n $(PYTEST_SIDE) --dist loadfile --no-loadscope-reorder \
 		$(VM_TESTS) tests/system tests/sim $(PANEL_TESTS:%=--ignore %)
 
@@ -469,6 +478,7 @@ VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd can402 torture)
 # A browser is driven in the tests' own process; LCM has one for itself.  They run
 # alone: a browser needs both cores at times.
 PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_login.py \
+	tests/system/test_panel_crowd.py \
 	tests/system/test_panel_page.py
 
 # For somebody who changes code: most of what goes wrong, in 90 s.
@@ -485,12 +495,20 @@ quick:
 	@EDM_SEED=1 $(MAKE) --no-print-directory run-units \
 		UNIT_X="$(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(UNIT_X))"
 	@tests/stage quick tests
-	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/system/test_erode.py
+	@EDM_BUILD=$(B) $(NETNS) .venv/bin/pytest -q tests/system/test_erode.py
 
 # What the virtual machine of tests/vm boots from, and edmd on libgpiod 2.x.
 PC2	= $(abspath build-vm/libgpiod2)
 
+# Where there can be none, its tests are skipped with what is in build-vm/lacks.
 vm: all
+	@mkdir -p build-vm
+	@tests/vm/lacks > build-vm/lacks
+	@if [ -s build-vm/lacks ]; then echo "  SKIP    the virtual machine:" \
+		"needs $$(cat build-vm/lacks)"; else \
+		$(MAKE) --no-print-directory vm-parts; fi
+
+vm-parts:
 	@tests/setup vm
 	@$(MAKE) --no-print-directory -C tests/vm B=$(abspath build-vm)
 	@$(MAKE) --no-print-directory B=build-gpiod2 build-gpiod2/edmd \
@@ -507,9 +525,17 @@ check-strict:
 check-vm:
 	@tests/setup check
 	@$(MAKE) --no-print-directory vm
-	@EDM_BUILD=$(B) tests/netns .venv/bin/pytest -q tests/vm
+	@EDM_BUILD=$(B) $(NETNS) .venv/bin/pytest -q tests/vm
 
-units: $(UNIT_X) $(PEER_X)
+units: $(UNIT_X) $(PEER_X) $(B)/loopback.so
+
+# Tests run in a network of their own; where there is none, by loopback.
+NETNS	= EDM_LOOPBACK='$(CURDIR)/$(B)' tests/netns
+
+$(B)/loopback.so: tests/loopback.c
+	$(call say,CC,$<)
+	$(Q)$(call whole,$(CC) -std=gnu11 -D_GNU_SOURCE -O2 $(WARN) -shared \
+		-fPIC $< -o)
 
 run-units: $(UNIT_X) $(PEER_X)
 	$(Q)printf '%s\n' $^ | xargs -P $(SIDE) -n 1 tests/one-unit
@@ -519,7 +545,7 @@ KILLS ?= 500
 .PHONY: kills hostile
 kills: all
 	@tests/setup check
-	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) tests/netns .venv/bin/pytest -q -s \
+	$(Q)EDM_BUILD=$(B) EDM_KILLS=$(KILLS) $(NETNS) .venv/bin/pytest -q -s \
 		tests/system/test_kills.py
 
 # QEMU killed at random instants, 60 times in each of five jobs; then the disk cut
@@ -529,16 +555,16 @@ CUTS ?= 300
 torture:
 	@tests/setup check
 	@$(MAKE) --no-print-directory vm
-	$(Q)EDM_BUILD=$(B) EDM_CUTS=$$(($(CUTS) / 5)) tests/netns \
+	$(Q)EDM_BUILD=$(B) EDM_CUTS=$$(($(CUTS) / 5)) $(NETNS) \
 		.venv/bin/pytest -q -s tests/vm/test_torture.py
-	$(Q)EDM_BUILD=$(B) EDM_CUTS=$(CUTS) tests/netns \
+	$(Q)EDM_BUILD=$(B) EDM_CUTS=$(CUTS) $(NETNS) \
 		.venv/bin/pytest -q -s tests/vm/test_disk_cut.py
 
 # 100,000 packets from another host, and how late the cycle woke meanwhile.
 HOSTILE ?= 100000
 hostile: all
 	@tests/setup check
-	$(Q)EDM_BUILD=$(B) EDM_HOSTILE=$(HOSTILE) tests/netns .venv/bin/pytest -q \
+	$(Q)EDM_BUILD=$(B) EDM_HOSTILE=$(HOSTILE) $(NETNS) .venv/bin/pytest -q \
 		-s tests/system/test_two_hosts.py
 
 # What holds in every cycle, over ten million random ones; SEED=n repeats one.
@@ -584,8 +610,7 @@ walkable: $(B)/unit/test_walkable
 
 # What threads share, under the thread sanitizer.
 run-crossings: $(filter $(B)/unit/test_shm% $(B)/unit/test_limits_threads,$(UNIT_X))
-	$(Q)for t in $^; do $$t >$$t.log 2>&1 || { cat $$t.log; exit 1; }; \
-		echo "  TSAN    $$t"; done
+	$(Q)printf '%s\n' $^ | xargs -n 1 tests/one-unit
 
 # Another compiler's opinion: warnings are errors, nothing is linked.
 clang:
@@ -711,7 +736,7 @@ fuzz_o	= $(patsubst %.c,$(B)/watched/%.o,$1)
 FUZZ_A	:= $(B)/watched/all.a
 INC_fuzz = -Itests/unit $(INC_edmd) $(INC_libinterp)
 FUZZ_PARTS = $(INTERP) $(COMMON) $(RT) $(WORDS) $(SETUP) \
-	  $(addprefix daemon/shm/,publish.c object.c names.c) \
+	  $(addprefix daemon/shm/,publish.c object.c names.c stop.c) \
 	  $(addprefix daemon/edmd/,commands.c crossing.c loop.c publish.c)
 
 $(B)/watched/%.o: %.c
@@ -876,7 +901,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' -type f 2>/dev/null)
 
-.PHONY: all panel pictures-panel panel-load panel-frames panel-firefox demo bench-plan check quick vm check-vm units run-units run-crossings clang bench \
+.PHONY: all panel pictures-panel panel-load panel-frames panel-firefox demo bench-plan check quick vm vm-parts check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo experiments-wire invariants \
 	walkable wire-random \

@@ -2,8 +2,9 @@
 /* both.c - two things at the same time */
 #include "both.h"
 
+#include "thread.h"
+
 #include <sched.h>
-#include <signal.h>
 
 uint32_t both_processors(void)
 {
@@ -11,18 +12,6 @@ uint32_t both_processors(void)
 
 	return sched_getaffinity(0, sizeof(set), &set) == 0 ?
 	       (uint32_t)CPU_COUNT(&set) : 1;
-}
-
-int both_start(pthread_t *ret, void *(*run)(void *), void *arg)
-{
-	sigset_t all, old;
-	int err;
-
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &old);
-	err = pthread_create(ret, NULL, run, arg);
-	pthread_sigmask(SIG_SETMASK, &old, NULL);
-	return err;
 }
 
 struct call {
@@ -42,7 +31,9 @@ void both(void (*one)(void *), void (*other)(void *), void *arg)
 {
 	struct call c = { other, arg };
 	pthread_t thread;
-	const int err = both_start(&thread, run, &c);
+	const int err = thread_start(&thread, &(struct thread) {
+		.name = "edm-both", .run = run, .arg = &c,
+	});
 
 	one(arg);
 	if (err)

@@ -105,6 +105,32 @@ int places_listen(const struct sockaddr_un *at, int type)
 	return err;
 }
 
+static int peer_check(int fd, const char *service)
+{
+	struct ucred peer;
+	socklen_t size = sizeof(peer);
+
+	if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) < 0)
+		return -errno;
+	return places_is_trusted(peer.uid, service) ? 0 : -EPERM;
+}
+
+int places_connect(const struct sockaddr_un *at, const char *service)
+{
+	const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC |
+			      SOCK_NONBLOCK, 0);
+	int err;
+
+	if (fd < 0)
+		return -errno;
+	err = connect(fd, (const struct sockaddr *)at, sizeof(*at)) < 0 ?
+	      -errno : peer_check(fd, service);
+	if (err == 0)
+		return fd;
+	close(fd);
+	return err;
+}
+
 /* The machine's name in a path as places_path() makes them; "" if it is not
  * one. */
 static void name_take(char to[NAMES_MACHINE_MAX], const char *path,

@@ -51,6 +51,13 @@ int places_address(struct sockaddr_un *to, const char *machine,
 int places_listen(const struct sockaddr_un *at, int type);
 
 /**
+ * places_connect() - to the SOCK_SEQPACKET at @at, if the user @service, root
+ * or this user listens.  Return: a descriptor that does not block; -EPERM:
+ * somebody else does; else -errno.
+ */
+int places_connect(const struct sockaddr_un *at, const char *service);
+
+/**
  * places_each() - call @fn with the name of each machine of which @what is on
  * this host.  Who made it is not looked at: the names are a hint.
  */

@@ -10,9 +10,10 @@
 static int why_failed(FILE *f)
 {
 	static const char block[4096];
+	const int fd = f == stdout ? STDOUT_FILENO : fileno(f);
 
 	errno = 0;
-	if (write(fileno(f), block, sizeof(block)) == (ssize_t)sizeof(block))
+	if (write(fd, block, sizeof(block)) == (ssize_t)sizeof(block))
 		return -EIO;
 	return errno ? -errno : -ENOSPC;
 }

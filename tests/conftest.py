@@ -1,18 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """What all tests share: signals as a terminal's shell leaves them, no size of
-its window, and a network for each process of tests.
+its window, a network for each process of tests, and what a host must let a test
+do.
 
 A program that is started by `nohup`, by `&` in a script or by a service
 manager may ignore SIGHUP or SIGINT, and what it starts inherits that.  A shell
 script cannot trap a signal that it ignored when it began.
+
+A test that needs more than an ordinary container allows says so:
+
+    @pytest.mark.needs("a network of its own")
+
+Elsewhere it is skipped, and the reason is counted at the end.
 """
 
+import collections
 import ctypes
+import functools
 import os
+import re
 import signal
 import subprocess
 
+import pytest
+
 CLONE_NEWNET = 0x40000000
+WORKER = os.environ.get("PYTEST_XDIST_WORKER", "")
 
 
 def own_network():
@@ -28,8 +41,18 @@ def own_network():
         subprocess.run(["ip", *command.split()], check=True)
 
 
-if "PYTEST_XDIST_WORKER" in os.environ:
-    own_network()
+def own_addresses():
+    """Beside others in the network that tests/netns found: of LCM the next
+    port, of DDS another tag."""
+    env, n = os.environ, int(WORKER.removeprefix("gw"))
+    env["LCM_DEFAULT_URL"] = re.sub(
+        r":(\d+)\?", lambda m: f":{int(m[1]) + 1 + n}?", env["LCM_DEFAULT_URL"])
+    env["CYCLONEDDS_URI"] = env["CYCLONEDDS_URI"].replace(
+        "</Tag>", f"-{n}</Tag>")
+
+
+if WORKER:
+    own_addresses() if "EDM_NET" in os.environ else own_network()
 # A terminal that a test makes has a size of its own.
 for name in ("COLUMNS", "LINES"):
     os.environ.pop(name, None)
@@ -38,3 +61,44 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 signal.signal(signal.SIGQUIT, signal.SIG_DFL)
 signal.signal(signal.SIGTERM, signal.SIG_DFL)
 signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# -- What the host lets a test do
+
+# Each with a command that ends in order where it is allowed.
+NEEDS = {
+    "a network of its own": ["unshare", *["-r"] * (os.geteuid() != 0), "-n",
+                             "ip", "link", "set", "lo", "up"],
+    "mounts of its own": ["unshare", "-m", "mount", "-t", "tmpfs", "tmpfs",
+                          "/dev/shm"],
+    "another user": ["setpriv", "--reuid", "65534", "--regid", "65534",
+                     "--clear-groups", "true"],
+    "to trace a process": ["strace", "-o", "/dev/null", "true"],
+}
+
+
+@functools.cache
+def refusal(need):
+    """Why it is not allowed here; "" if it is."""
+    p = subprocess.run(NEEDS[need], capture_output=True, text=True)
+    return p.stderr.strip().splitlines()[-1] if p.stderr and p.returncode \
+        else "not allowed" * (p.returncode != 0)
+
+
+def pytest_configure(config):
+    config.addinivalue_line(
+        "markers", "needs(what, ...): skipped where the host does not allow it")
+
+
+def pytest_runtest_setup(item):
+    for mark in item.iter_markers("needs"):
+        for need in mark.args:
+            if why := refusal(need):
+                pytest.skip(f"needs {need}: {why}")
+
+
+def pytest_terminal_summary(terminalreporter):
+    """The reasons, each with how many tests it kept from running."""
+    skipped = terminalreporter.stats.get("skipped", [])
+    for reason, n in sorted(collections.Counter(
+            r.longrepr[2].removeprefix("Skipped: ") for r in skipped).items()):
+        terminalreporter.write_line(f"skipped {n}: {reason}")

@@ -63,7 +63,7 @@ int heard_listen(struct heard *ret, const char *url, int ms)
 	struct pollfd p = { .events = POLLIN };
 	struct udpm *in;
 	double left_s;
-	int err = udpm_url_read(&at, url ? url : TALK_URL) ? -EINVAL :
+	int err = udpm_url_read(&at, url ? url : talk_default_url()) ? -EINVAL :
 		  udpm_open(&in, &at);
 
 	*ret = (struct heard) { .n = 0 };

@@ -17,6 +17,7 @@
 #include "packet.h"
 #include "seal.h"
 #include "standard.h"
+#include "talk_stop.h"
 #include "talk_way.h"
 
 #include <errno.h>
@@ -35,15 +36,20 @@
 #define REPEAT_S	0.3
 #define HELLO_S		0.2
 #define LISTENERS	8
+#define ALONE_S		0.5		/* then what edmd itself has done is
+					 * told */
 #define CODE_AGAIN	100		/* sign it again; messages/README.md */
 
 /* A question that waits for its answer. */
 struct question {
 	int64_t seq;			/* 0: free */
 	char *verb, *job, *text;
-	double arg, until_s, sent_s;
+	double arg, until_s, sent_s, begun_s;
 	talk_answer_fn fn;
 	void *arg_fn;
+	int stop;			/* talk_stop_take(); -1: none */
+	bool ended;			/* edmd itself has done it */
+	int code;			/* its answer */
 };
 
 struct listener {
@@ -55,6 +61,7 @@ struct listener {
 
 struct talk {
 	struct talk_way *way;
+	bool is_here;			/* the machine is on this host */
 	struct keyfile key;
 	char machine[32];
 	char client[TALK_WORD_MAX];
@@ -219,7 +226,9 @@ static void question_end(struct question *q, int err,
 	free(q->verb);
 	free(q->job);
 	free(q->text);
-	*q = (struct question) { .seq = 0 };
+	if (q->stop >= 0)
+		close(q->stop);
+	*q = (struct question) { .seq = 0, .stop = -1 };
 	if (was.fn)
 		was.fn(was.arg_fn, err, a);
 }
@@ -412,7 +421,10 @@ int talk_open(struct talk **ret, const struct talk_options *o,
 	int err = t && sodium_init() >= 0 ? 0 : -ENOMEM;
 
 	snprintf(said, TALK_SAID_MAX, "out of memory");
+	for (int i = 0; t && i < TALK_QUESTIONS; i++)
+		t->question[i].stop = -1;
 	if (err == 0) {
+		t->is_here = !o->url;
 		snprintf(t->machine, sizeof(t->machine), "%s",
 			 o->machine ? o->machine : "edm");
 		snprintf(t->client, sizeof(t->client), "%.20s-%d-%08x%08x",
@@ -458,6 +470,22 @@ const char *talk_why(const struct talk *t)
 
 /* -- Questions ------------------------------------------------------------ */
 
+/* edmd itself has carried the act out.  Its refusal is no answer: edmd-jobs
+ * knows of jobs that edmd does not. */
+static void stop_turn(struct question *q, double now_s)
+{
+	const int got = q->stop >= 0 ? talk_stop_take(q->stop, &q->code) : 0;
+
+	if (got != 0)
+		q->stop = -1;
+	q->ended = q->ended || (got > 0 && q->code == 0);
+	if (!q->ended || now_s < q->begun_s + ALONE_S)
+		return;
+	question_end(q, 0, &(struct talk_ack) {
+		.seq = q->seq, .reason = TALK_STOP_DONE, .body = "",
+	});
+}
+
 /* Send again what is due, and give up what has waited long enough. */
 static void questions_turn(struct talk *t)
 {
@@ -468,6 +496,8 @@ static void questions_turn(struct talk *t)
 	for (int i = 0; i < TALK_QUESTIONS; i++) {
 		struct question *q = &t->question[i];
 
+		if (q->seq)
+			stop_turn(q, now_s);
 		if (!q->seq)
 			continue;
 		if (now_s > q->until_s)
@@ -502,10 +532,28 @@ void talk_wait(struct talk *t, int ms)
 		talk_step(t);
 }
 
+/* An act that ends motion takes the place of what was asked first. */
+static struct question *room_for(struct talk *t, const char *verb)
+{
+	struct question *room = question_find(t, 0);
+
+	if (room || !talk_stop_is(verb))
+		return room;
+	for (int i = 0; i < TALK_QUESTIONS; i++) {
+		struct question *q = &t->question[i];
+
+		if (!talk_stop_is(q->verb) && (!room || q->seq < room->seq))
+			room = q;
+	}
+	if (room)
+		question_end(room, -ETIMEDOUT, NULL);
+	return room;
+}
+
 int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
 	      talk_answer_fn fn, void *arg)
 {
-	struct question *room = question_find(t, 0);
+	struct question *room = room_for(t, q->verb);
 
 	if (!room)
 		return -EAGAIN;
@@ -513,16 +561,35 @@ int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
 		.seq = ++t->seq, .arg = q->arg, .fn = fn, .arg_fn = arg,
 		.verb = strdup(q->verb), .job = strdup(q->job ? q->job : ""),
 		.text = strdup(q->text ? q->text : ""),
-		.until_s = talk_now_s() + timeout_s,
+		.begun_s = talk_now_s(),
+		.until_s = talk_now_s() + timeout_s, .stop = -1,
 	};
 	if (!room->verb || !room->job || !room->text) {
 		room->fn = NULL;
 		question_end(room, -ENOMEM, NULL);
 		return -ENOMEM;
 	}
+	/* Whose key may only look does not ask edmd past it. */
+	if (t->is_here && talk_stop_is(q->verb) &&
+	    strcmp(t->key.role, "viewer") != 0)
+		room->stop = talk_stop_send(t->machine, q->verb,
+					    seal_act_id(t->key.public,
+							t->client, room->seq));
 	if (t->known)
 		send_question(t, room);
 	return 0;
+}
+
+void talk_forget(struct talk *t, const void *arg)
+{
+	for (int i = 0; i < TALK_QUESTIONS; i++) {
+		struct question *q = &t->question[i];
+
+		if (!q->seq || q->arg_fn != arg)
+			continue;
+		q->fn = NULL;
+		question_end(q, 0, NULL);
+	}
 }
 
 int talk_answer_copy(struct talk_answer *ret, const struct talk_ack *a)

@@ -42,7 +42,8 @@ struct talk;
 struct talk_options {
 	const char *machine;		/* NULL: "edm" */
 	const char *url;		/* of LCM; NULL: the socket of this
-					 * host; if there is none, TALK_URL */
+					 * host; if there is none,
+					 * talk_default_url() */
 	const char *key;		/* key file; NULL: that of $EDM_KEY,
 					 * else the host's own */
 	const char *program;		/* our name; NULL: "client" */
@@ -99,6 +100,9 @@ struct talk_answer {
 	int code;
 	char *reason, *body;		/* to be freed by talk_answer_free() */
 };
+
+/** talk_default_url() - that of $LCM_DEFAULT_URL, or TALK_URL. */
+const char *talk_default_url(void);
 
 /**
  * talk_open() - read the key and join the channels of the machine.
@@ -162,6 +166,9 @@ int talk_answer_copy(struct talk_answer *ret, const struct talk_ack *a);
  */
 int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
 	      talk_answer_fn fn, void *arg);
+
+/** talk_forget() - drop what was asked with @arg; nothing is called back. */
+void talk_forget(struct talk *t, const void *arg);
 
 /** talk_on_event() - set the function that gets every EVENT; NULL: none. */
 void talk_on_event(struct talk *t,

@@ -46,6 +46,13 @@ static int connect_local(struct talk_way *w)
 	return err;
 }
 
+const char *talk_default_url(void)
+{
+	const char *url = getenv("LCM_DEFAULT_URL");
+
+	return url && *url ? url : TALK_URL;
+}
+
 /* @named: the user chose the URL. */
 static int join(struct talk_way *w, const char *url, bool named, char *said)
 {
@@ -56,7 +63,9 @@ static int join(struct talk_way *w, const char *url, bool named, char *said)
 
 	wrong = udpm_url_read(&at, url);
 	if (wrong) {
-		snprintf(said, TALK_SAID_MAX, "URL %s: %s", url, wrong);
+		snprintf(said, TALK_SAID_MAX, "%s %s; %s; such as "
+			 TALK_URL, named ? "--url" : "LCM_DEFAULT_URL",
+			 url, wrong);
 		return -EDESTADDRREQ;
 	}
 	err = udpm_open(&w->net, &at);
@@ -79,7 +88,7 @@ static int find(struct talk_way *w, const char *machine, const char *url,
 
 	if (err == 0)
 		err = connect_local(w);
-	return err < 0 ? join(w, url ? url : TALK_URL, url, said) : 0;
+	return err < 0 ? join(w, url ? url : talk_default_url(), url, said) : 0;
 }
 
 int talk_way_open(struct talk_way **ret, const char *machine, const char *url,

@@ -5,6 +5,8 @@
 #include "ctl.h"
 #include "heard.h"
 #include "history.h"
+#include "standard.h"
+#include "talk_stop.h"
 
 #include <errno.h>
 #include <math.h>
@@ -54,6 +56,8 @@ int ctl_unanswered(const struct ctl *c, int err)
 		fprintf(stderr, "edmctl: interrupted before an answer came\n");
 		return EX_TEMPFAIL;
 	}
+	/* Somebody may have to stop the machine now: that comes first. */
+	ctl_ways_print(c);
 	if (!c->talk && (c->talk_err != -ENOENT || key_is_named(c))) {
 		fprintf(stderr, "edmctl: %s\n", c->said);
 		if (c->talk_err == -ENETUNREACH)
@@ -107,9 +111,12 @@ static int answered(const struct ctl *c, const struct talk_question *q, int err,
 int ctl_ask(struct ctl *c, const struct talk_question *q,
 	    struct talk_answer *ret)
 {
-	const int err = c->talk ? talk_ask(c->talk, q, c->timeout_s, ret) :
-				  -ETIMEDOUT;
+	int err = -ETIMEDOUT;
 
+	if (c->talk)
+		err = talk_ask(c->talk, q, c->timeout_s, ret);
+	else if (!c->url && talk_stop_is(q->verb))
+		err = talk_stop_ask(c->machine, q->verb, c->timeout_s, ret);
 	return answered(c, q, err, ret);
 }
 
@@ -461,10 +468,9 @@ static void tell_progress(double since_s, size_t jobs, bool end)
 {
 	if (talk_now_s() - since_s < 1 || !isatty(STDERR_FILENO))
 		return;
-	if (end)
-		fputs("\r\033[K", stderr);
-	else
-		fprintf(stderr, "\r%zu jobs", jobs);
+	standard_control(stderr, end ? "\r\033[K" : "\r");
+	if (!end)
+		fprintf(stderr, "%zu jobs", jobs);
 }
 
 /*

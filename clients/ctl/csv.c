@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* csv.c - reads a trace CSV, row by row */
 #include "csv.h"
+#include "standard.h"
 
 #include <errno.h>
 #include <math.h>
@@ -109,8 +110,8 @@ static void tell(struct csv *c)
 	if (percent == c->percent)
 		return;
 	c->percent = percent;
-	fprintf(stderr, "\r%s: reading %s, %d %% ", c->program, c->path,
-		percent);
+	standard_control(stderr, "\r");
+	fprintf(stderr, "%s: reading %s, %d %% ", c->program, c->path, percent);
 }
 
 /* Read one number and the comma behind it. */
@@ -208,7 +209,7 @@ int csv_next(struct csv *c, struct csv_row *ret)
 void csv_close(struct csv *c)
 {
 	if (c->percent)
-		fputs("\r\033[K", stderr);
+		standard_control(stderr, "\r\033[K");
 	if (c->f)
 		fclose(c->f);
 }

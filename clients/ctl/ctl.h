@@ -44,6 +44,12 @@ struct ctl {
 	char said[TALK_SAID_MAX];
 };
 
+/**
+ * ctl_ways_print() - edmd-jobs is silent: how the machine can still be stopped.
+ * Nothing is said of a machine that is not on this host.
+ */
+void ctl_ways_print(const struct ctl *c);
+
 int ctl_submit(struct ctl *c);
 int ctl_keys(struct ctl *c);
 int ctl_electrode(struct ctl *c);

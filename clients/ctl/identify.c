@@ -12,6 +12,7 @@
 
 #include "interp/identify.h"
 #include "grow.h"
+#include "standard.h"
 
 #include <errno.h>
 #include <math.h>
@@ -172,7 +173,8 @@ static void tell_pass(void *arg)
 	p->passes++;
 	if (!p->shown)
 		return;
-	fprintf(stderr, "\redmctl: identify: %c: pass %d over the trace ",
+	standard_control(stderr, "\r");
+	fprintf(stderr, "edmctl: identify: %c: pass %d over the trace ",
 		INTERP_AXIS_LETTERS[p->axis], p->passes);
 }
 
@@ -189,7 +191,7 @@ static int identify_axis(const struct columns *t, int axis,
 	}, d);
 
 	if (p.shown)
-		fputs("\r\033[K", stderr);
+		standard_control(stderr, "\r\033[K");
 	return err;
 }
 

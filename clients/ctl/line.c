@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* line.c - progress in one line: redrawn on a terminal, repeated elsewhere */
 #include "ctl.h"
+#include "standard.h"
 
 #include <math.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,9 +67,10 @@ static void bar(char ret[BAR_CHARS + 3], double done, int room)
 static void draw(struct line *l, const char *text)
 {
 	if (l->tty)
-		printf("\r\033[K%.*s", columns(), text);
-	else
-		printf("%s\n", text);
+		standard_control(stdout, "\r\033[K");
+	printf("%.*s", l->tty ? columns() : INT_MAX, text);
+	if (!l->tty)
+		putchar('\n');
 	l->drawn = l->tty;
 	fflush(stdout);
 }

@@ -146,7 +146,7 @@ static const struct cmdline_row rows[] = {
 	  "name of the machine; default: $EDM_MACHINE, or edm" },
 	{ "url", "URL", CMDLINE_WORD, AT(url), .help =
 	  "URL of LCM; default: the socket of this host; if there is\n"
-	  "none, " TALK_URL },
+	  "none, $LCM_DEFAULT_URL, or " TALK_URL },
 	{ "key", "FILE", CMDLINE_WORD, AT(key), .help =
 	  "key to sign with; default: $EDM_KEY, or the host's key" },
 	{ "json", NULL, CMDLINE_FLAG, AT(json), .help =

@@ -3,6 +3,7 @@
 #include "screen.h"
 
 #include "plain.h"
+#include "standard.h"
 
 #include <curses.h>
 #include <errno.h>
@@ -144,6 +145,7 @@ int screen_watch(struct ctl *c)
 	int err;
 
 	setlocale(LC_CTYPE, "");
+	standard_raw();
 	on = newterm(NULL, stdout, stdin);
 	if (!on)
 		return -ENOTTY;

@@ -6,6 +6,7 @@
  * writer is still there.  For each picture the cache is read again.
  */
 #include "cmdline.h"
+#include "standard.h"
 #include "table.h"
 #include "tool.h"
 #include "topic.h"
@@ -152,15 +153,17 @@ static int run_once(struct fleet *f, const struct options *o)
 	int err = 0;
 
 	for (double s = 0; s < o->wait_s && !stop && err == 0; s += 0.1) {
-		if (tty)
-			fprintf(stderr, "\redm-fleet: domain %u, listened "
+		if (tty) {
+			standard_control(stderr, "\r");
+			fprintf(stderr, "edm-fleet: domain %u, listened "
 				"%.1f of %.1f s, machines: %zu ", o->domain,
 				s, o->wait_s, f->nrows);
+		}
 		stop = tool_wait(&f->stops, 100 * MS);
 		err = fleet_look(f);
 	}
 	if (tty)
-		fputs("\r\033[K", stderr);
+		standard_control(stderr, "\r\033[K");
 	if (err < 0)
 		return err;
 	print(f, o->json);
@@ -176,10 +179,11 @@ static int run_watch(struct fleet *f, const struct options *o)
 		err = fleet_look(f);
 		if (err < 0)
 			return err;
-		if (redraw)
-			printf("\033[H\033[JEDM fleet, DDS domain %u, "
-			       "machines: %zu (Ctrl-C ends)\n\n", o->domain,
-			       f->nrows);
+		if (redraw) {
+			standard_control(stdout, "\033[H\033[J");
+			printf("EDM fleet, DDS domain %u, machines: %zu "
+			       "(Ctrl-C ends)\n\n", o->domain, f->nrows);
+		}
 		print(f, o->json);
 	} while (!tool_wait(&f->stops, redraw ? LOOK_NS : LINE_NS));
 	return 0;

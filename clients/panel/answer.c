@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* answer.c - the answers to requests of HTTP */
 #include "answer.h"
+#include "frames.h"
 
 #include <sodium.h>
 #include <stdio.h>
@@ -73,13 +74,14 @@ static int write_head(struct request *r)
 	return 0;
 }
 
-/* A connection that stays open has no upload under way any more. */
+/* A connection that stays open has nothing under way any more. */
 static void drop_body(struct request *r)
 {
+	share_give(&r->upload);
+	share_give(&r->work);
 	if (!r->has_body)
 		return;
 	close(r->body_fd);
-	r->panel->bodies--;
 	r->has_body = false;
 }
 
@@ -174,6 +176,7 @@ int answer_write(struct request *r)
 	if (r->status >= 400)
 		return -1;
 	wsi = r->wsi;
+	frames_none(lws_get_socket_fd(wsi));
 	answer_forget(r);
 	return lws_http_transaction_completed(wsi) ? -1 : 0;
 }

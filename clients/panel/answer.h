@@ -28,6 +28,7 @@ struct request {
 					 * text has come */
 	int body_fd;
 	size_t body_bytes;
+	struct share upload, work;	/* the text; the program that runs */
 	/* The answer. */
 	bool answered, headed;
 	int status;

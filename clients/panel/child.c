@@ -119,13 +119,9 @@ static void become(const struct child_job *j, int out_fd)
 	_exit(127);
 }
 
-/* The last slots are kept for small programs: a login must not wait behind
- * programs that use all they may. */
-static struct child *free_one(struct children *c, bool large)
+static struct child *free_one(struct children *c)
 {
-	const int most = large ? CHILDREN_MAX - CHILDREN_KEPT : CHILDREN_MAX;
-
-	for (int i = 0; i < most; i++)
+	for (int i = 0; i < CHILDREN_MAX; i++)
 		if (c->child[i].pid == 0)
 			return &c->child[i];
 	return NULL;
@@ -134,7 +130,7 @@ static struct child *free_one(struct children *c, bool large)
 int child_start(struct children *c, const struct child_job *j,
 		child_done_fn done, void *arg)
 {
-	struct child *n = free_one(c, j->memory_bytes > 0);
+	struct child *n = free_one(c);
 	int out_fd;
 	pid_t pid;
 

@@ -12,8 +12,7 @@
 
 #include <stddef.h>
 
-#define CHILDREN_MAX	6
-#define CHILDREN_KEPT	2	/* not for programs with a limit of memory */
+#define CHILDREN_MAX	24	/* and those that are being ended */
 
 struct children;
 

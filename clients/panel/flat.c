@@ -5,6 +5,7 @@
 #include "flat.h"
 
 #include "interp/at.h"
+#include "interp/wire.h"
 #include "grow.h"
 
 #include <errno.h>
@@ -77,7 +78,8 @@ static int keep(struct walk *w, const struct spot *at)
 		f->at_mm[3 * f->n + (size_t)i] =
 			(float)(at->mm[i] - f->origin_mm[i]);
 	for (int i = 0; i < 2; i++)
-		f->upper_mm[2 * f->n + (size_t)i] = (float)at->mm[3 + i];
+		f->upper_mm[2 * f->n + (size_t)i] =
+			(float)(at->mm[3 + i] + (f->rides ? at->mm[i] : 0));
 	f->s_mm[f->n] = at->s_mm;
 	f->line[f->n] = at->line;
 	f->kind[f->n] = at->kind;
@@ -248,13 +250,13 @@ static double extent(const struct flat *f)
 	return most > 0 ? most : 1;
 }
 
-int flat_make(struct flat *f, const struct interp_program *p,
+int flat_make(struct flat *f, const struct interp_program *p, int guides,
 	      double tolerance_mm)
 {
 	struct walk w = { .flat = f, .p = p, .measure = true };
 	int err;
 
-	*f = (struct flat) { .n = 0 };
+	*f = (struct flat) { .rides = guides == INTERP_GUIDES_RELATIVE };
 	measure(f, p);
 	err = walk_all(&w);
 	if (err)

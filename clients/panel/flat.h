@@ -26,8 +26,8 @@ struct flat {
 	size_t n, room;
 	float *at_mm;			/* X Y Z of each point, minus
 					 * origin_mm */
-	float *upper_mm;		/* U V of each point, if the program has
-					 * them */
+	float *upper_mm;		/* the upper guide at each point, if the
+					 * program moves U or V */
 	double *s_mm;			/* place on the path */
 	uint32_t *line;			/* the line of the text that leads to
 					 * it */
@@ -37,15 +37,16 @@ struct flat {
 	double tolerance_mm;		/* the one that was used */
 	double cut_mm, rapid_mm;
 	bool has_upper;
+	bool rides;			/* the upper guide rides on the lower */
 };
 
 /**
  * flat_make() - make the points. @tolerance_mm 0 means a 2000th of the path's
- * extent.
+ * extent.  @guides is enum interp_guides of the machine.
  *
  * Return: 0 or -ENOMEM. In both cases call flat_fini() for @ret.
  */
-int flat_make(struct flat *ret, const struct interp_program *p,
+int flat_make(struct flat *ret, const struct interp_program *p, int guides,
 	      double tolerance_mm);
 void flat_fini(struct flat *f);
 

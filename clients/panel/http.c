@@ -19,7 +19,6 @@
 #include "plain.h"
 #include "answer.h"
 
-#include <arpa/inet.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,8 +27,8 @@
 #include <unistd.h>
 
 #define BODY_S		60		/* the longest time of an upload */
-#define BODIES_MAX	4
 #define CHECK_S		30
+#define SEND_S		180
 #define CHECK_BYTES	((size_t)1536 << 20)
 #define LOGIN_MAX	1024
 #define NAME_ROOM	320
@@ -95,18 +94,20 @@ bool http_is_ours(struct panel *p, struct lws *wsi, bool want_origin)
  * user who began it. */
 struct session *http_session(struct panel *p, struct lws *wsi)
 {
+	struct visitor *v = visitor_of(wsi);
+	struct share_who who;
 	char cookie[1024];
 	struct session *s;
-	unsigned int uid;
 
 	if (lws_hdr_copy(wsi, cookie, sizeof(cookie),
 			 WSI_TOKEN_HTTP_COOKIE) <= 0)
 		return NULL;
 	s = session_find(p->sessions, cookie);
-	if (s && p->local &&
-	    (session_peer_uid(lws_get_socket_fd(wsi), &uid) < 0 ||
-	     uid != s->uid))
+	if (!s || (p->local &&
+		   (v->uid == SESSION_NOBODY || v->uid != s->uid)))
 		return NULL;
+	visitor_who(v, s, &who);
+	share_pass(&v->share, &who);
 	return s;
 }
 
@@ -118,15 +119,41 @@ static bool has_token(struct request *r, const struct session *s)
 				   12) > 0 && session_token_ok(s, token);
 }
 
-static void peer_of(struct request *r, char to[SESSION_ADDRESS_MAX])
+static const struct visitor *visitor(const struct request *r)
 {
-	static const char mapped[] = "::ffff:";
+	return visitor_of(r->wsi);
+}
 
-	to[0] = '\0';
-	lws_get_peer_simple(r->wsi, to, SESSION_ADDRESS_MAX);
-	if (strncmp(to, mapped, sizeof(mapped) - 1) == 0)
-		memmove(to, to + sizeof(mapped) - 1,
-			strlen(to) - sizeof(mapped) + 2);
+/* What it held is somebody else's now, or it took too long. */
+static void on_taken(void *arg, const char *why)
+{
+	struct request *r = arg;
+
+	child_forget(r->panel->children, r);
+	service_forget(r->panel->service, r);
+	if (!r->answered)
+		answer_refusal(r, 503, why, "try again");
+}
+
+static int take_share(struct request *r, struct share *s, enum share_kind kind)
+{
+	struct share_who who;
+
+	*s = (struct share) { .kind = kind, .end = on_taken, .arg = r };
+	visitor_who(visitor(r), http_session(r->panel, r->wsi), &who);
+	return share_take(r->panel->shares, s, &who);
+}
+
+/* Run a program for the request.  Return: as the callback of lws. */
+static int run_child(struct request *r, enum share_kind kind,
+		     const struct child_job *j, child_done_fn done)
+{
+	if (take_share(r, &r->work, kind) ||
+	    child_start(r->panel->children, j, done, r))
+		return answer_refusal(r, 503, "too much is under way",
+				     "try again");
+	share_limit(&r->upload, 0);
+	return answer_wait(r, (int)j->limit_s + 5);
 }
 
 /* The text after "KEY=" in the address, or the text as it is if there is no
@@ -163,19 +190,10 @@ static int get_session(struct request *r)
 {
 	struct panel *p = r->panel;
 	struct session *s = http_session(p, r->wsi);
-	char user[SESSION_USER_MAX], address[SESSION_ADDRESS_MAX];
-	enum role role = ROLE_VIEWER;
-	unsigned int uid = SESSION_NOBODY;
+	const struct visitor *v = visitor(r);
 
-	if (s || !p->local)
-		return give_session(r, s);
-	snprintf(user, sizeof(user), "?");
-	if (session_peer_uid(lws_get_socket_fd(r->wsi), &uid) == 0)
-		role = session_local_role(uid, p->local_role, user);
-	peer_of(r, address);
-	s = session_begin(p->sessions, user, role, address);
-	if (s)
-		s->uid = uid;
+	if (!s && p->local)
+		s = session_begin(p->sessions, v, v->user, v->role);
 	return give_session(r, s);
 }
 
@@ -183,22 +201,21 @@ static void on_verified(void *arg, int status, int out_fd)
 {
 	struct request *r = arg;
 	struct panel *p = r->panel;
-	char address[SESSION_ADDRESS_MAX];
+	const struct visitor *v = visitor(r);
 	struct session *s;
 
 	close(out_fd);
-	peer_of(r, address);
 	if (status != 0) {
-		panel_note(p, "%s: login as %s was refused", address,
+		panel_note(p, "%s: login as %s was refused", v->address,
 			   r->user.name);
 		answer_refusal(r, 403, "name or password is wrong",
 			      "edm-panel --add-user makes users");
 		return;
 	}
-	session_try_ok(p->sessions, address);
-	panel_note(p, "%s: %s logged in as %s", address, r->user.name,
+	session_try_ok(p->sessions, v->net);
+	panel_note(p, "%s: %s logged in as %s", v->address, r->user.name,
 		   role_name(r->user.role));
-	s = session_begin(p->sessions, r->user.name, r->user.role, address);
+	s = session_begin(p->sessions, v, r->user.name, r->user.role);
 	if (s)
 		snprintf(s->hash, sizeof(s->hash), "%s", r->user.hash);
 	give_session(r, s);
@@ -209,14 +226,30 @@ static void on_verified(void *arg, int status, int out_fd)
 #define NO_HASH	"$argon2id$v=19$m=65536,t=2,p=1$AAAAAAAAAAAAAAAAAAAAAA$" \
 		"AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"
 
+/* The file of users is not as it should be: that is nobody's wrong password. */
+static int refuse_users(struct request *r, int err)
+{
+	const char *what = err == -EBADMSG ? "a line of it is damaged" :
+					     strerror(-err);
+
+	panel_note(r->panel, "nobody can log in: %s: %s; edm-panel --add-user, "
+		   "as root, writes it so that edm-panel can read it",
+		   r->panel->config.panel.users, what);
+	return answer_refusal(r, 503, "the panel cannot read its file of users",
+			     "its journal says why; edm-panel --add-user, as "
+			     "root, mends it");
+}
+
 static int verify(struct request *r, const char *name, const char *password)
 {
 	const char *const argv[] = { r->panel->self, "--work", "verify", NULL };
 	struct child_job j = { .argv = argv, .limit_s = 10 };
-	int err;
+	int err = session_user_find(r->panel->config.panel.users, name,
+				    &r->user);
 
-	if (session_user_find(r->panel->config.panel.users, name,
-			      &r->user) < 0) {
+	if (err && err != -ESRCH)
+		return refuse_users(r, err);
+	if (err) {
 		r->user = (struct session_user) { .hash = NO_HASH };
 		snprintf(r->user.name, sizeof(r->user.name), "%s", name);
 	}
@@ -224,12 +257,9 @@ static int verify(struct request *r, const char *name, const char *password)
 	if (j.in_fd < 0)
 		return answer_refusal(r, 503, "no room", "try again");
 	dprintf(j.in_fd, "%s\n%s", r->user.hash, password);
-	err = child_start(r->panel->children, &j, on_verified, r);
+	err = run_child(r, SHARE_LOGIN, &j, on_verified);
 	close(j.in_fd);
-	if (err)
-		return answer_refusal(r, 503, "too much is under way",
-				     "try again");
-	return answer_wait(r, BODY_S);
+	return err;
 }
 
 /* The characters that a name may have: names go into the journal. */
@@ -244,7 +274,7 @@ static bool is_plain(const char *s, size_t most)
 
 static int post_login(struct request *r)
 {
-	char address[SESSION_ADDRESS_MAX], wait[64];
+	char wait[64];
 	size_t bytes;
 	char *text = child_read(r->body_fd, LOGIN_MAX, &bytes);
 	json_t *o = text ? json_loadb(text, bytes, 0, NULL) : NULL;
@@ -253,8 +283,7 @@ static int post_login(struct request *r)
 								 "password"));
 	int rc, wait_s;
 
-	peer_of(r, address);
-	wait_s = session_may_try(r->panel->sessions, address);
+	wait_s = session_may_try(r->panel->sessions, visitor(r)->net);
 	if (wait_s) {
 		snprintf(wait, sizeof(wait), "again in %d s", wait_s);
 		rc = answer_refusal(r, 429, "too many tries", wait);
@@ -293,16 +322,46 @@ static void places(const struct panel *p, char *to, size_t size)
 				      p->config.start_mm[i]);
 }
 
+static void forget_path(void *arg, const char *why)
+{
+	struct checked *c = arg;
+
+	(void)why;
+	close(c->fd);
+	c->id[0] = '\0';
+}
+
 /* Keep the last few, so that their paths can be looked at. */
 static void keep_check(struct request *r, int fd)
 {
-	struct panel *p = r->panel;
-	const unsigned int i = p->checked++ % 8;
+	struct checked *c = r->panel->checked;
+	struct share_who who;
 
-	if (p->checked_fd[i] > 0)
-		close(p->checked_fd[i]);
-	p->checked_fd[i] = fd;
-	memcpy(p->checked_path[i], r->id, sizeof(r->id));
+	while (c->id[0])
+		c++;
+	c->share = (struct share) { .kind = SHARE_PATH, .end = forget_path,
+				    .arg = c, .idle = true };
+	visitor_who(visitor(r), http_session(r->panel, r->wsi), &who);
+	if (share_take(r->panel->shares, &c->share, &who)) {
+		close(fd);
+		return;
+	}
+	c->fd = fd;
+	memcpy(c->id, r->id, sizeof(c->id));
+}
+
+static int give_check(struct request *r, const char *id)
+{
+	for (int i = 0; i < PANEL_CHECKED_ROOM; i++) {
+		struct checked *c = &r->panel->checked[i];
+
+		if (!c->id[0] || strcmp(c->id, id) != 0)
+			continue;
+		share_use(&c->share);
+		return answer_file(r, dup(c->fd));
+	}
+	return answer_refusal(r, 404, "that text is forgotten",
+			     "check it again");
 }
 
 static json_t *head_of(int fd)
@@ -361,10 +420,7 @@ static int post_check(struct request *r)
 
 	places(r->panel, start, sizeof(start));
 	answer_draw_id(r);
-	if (child_start(r->panel->children, &j, on_checked, r))
-		return answer_refusal(r, 503, "too much is under way",
-				     "try again");
-	return answer_wait(r, CHECK_S + 5);
+	return run_child(r, SHARE_CHECK, &j, on_checked);
 }
 
 static void on_sent(void *arg, const struct service_answer *a)
@@ -401,7 +457,8 @@ static int post_job(struct request *r)
 	if (err)
 		return answer_refusal(r, 503, "two jobs are being sent already",
 				     "try again when one of them is there");
-	return answer_wait(r, 180);
+	share_limit(&r->upload, SEND_S);
+	return answer_wait(r, SEND_S);
 }
 
 static void on_path(void *arg, int status, int out_fd)
@@ -425,25 +482,15 @@ static int get_path(struct request *r)
 				     .memory_bytes = (size_t)2 << 30,
 				     .limit_s = CHECK_S };
 
-	if (read_arg(r, "check=", check, sizeof(check))) {
-		for (int i = 0; i < 8; i++)
-			if (r->panel->checked_fd[i] > 0 &&
-			    strcmp(r->panel->checked_path[i], check) == 0)
-				return answer_file(r, dup(
-						  r->panel->checked_fd[i]));
-		return answer_refusal(r, 404, "that text is forgotten",
-				     "check it again");
-	}
+	if (read_arg(r, "check=", check, sizeof(check)))
+		return give_check(r, check);
 	read_arg(r, "program=", number, sizeof(number));
 	read_arg(r, "tolerance=", tolerance, sizeof(tolerance));
 	if (!*number || strspn(number, "0123456789") != strlen(number))
 		return answer_refusal(r, 400, "no program", "its number");
 	if (strspn(tolerance, "0123456789.e-") != strlen(tolerance))
 		return answer_refusal(r, 400, "no tolerance", "mm");
-	if (child_start(r->panel->children, &j, on_path, r))
-		return answer_refusal(r, 503, "too much is under way",
-				     "try again");
-	return answer_wait(r, CHECK_S + 5);
+	return run_child(r, SHARE_CHECK, &j, on_path);
 }
 
 static const struct route routes[] = {
@@ -534,15 +581,15 @@ static int open_body(struct request *r)
 	    strspn(length, "0123456789") != strlen(length) ||
 	    strtoul(length, NULL, 10) > r->route->body_max)
 		return answer_refusal(r, 413, "too long", "at most 64 MiB");
-	if (r->panel->bodies >= BODIES_MAX)
+	if (take_share(r, &r->upload, SHARE_UPLOAD))
 		return answer_refusal(r, 503, "too many uploads at once",
 				     "try again");
 	r->body_fd = child_file("panel-body");
 	if (r->body_fd < 0)
 		return answer_refusal(r, 503, "no room", "try again");
 	r->has_body = true;
-	r->panel->bodies++;
-	lws_set_timeout(r->wsi, PENDING_TIMEOUT_HTTP_CONTENT, BODY_S);
+	/* lws begins its own anew with each piece. */
+	share_limit(&r->upload, BODY_S);
 	return 0;
 }
 
@@ -619,12 +666,29 @@ static int begin(struct lws *wsi, struct request *r, const char *path)
 	return take(r, path);
 }
 
+static int refuse_upgrade(struct lws *wsi)
+{
+	lws_return_http_status(wsi, HTTP_STATUS_BAD_REQUEST,
+			       "HTTP/1.1, and Upgrade: websocket");
+	return -1;
+}
+
 int http_callback(struct lws *wsi, enum lws_callback_reasons reason,
 		  void *user, void *in, size_t len)
 {
 	struct request *r = user;
 
 	switch (reason) {
+	case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
+		return visitor_begin(lws_context_user(lws_get_context(wsi)),
+				     wsi);
+	case LWS_CALLBACK_WSI_DESTROY:
+		visitor_end(wsi);
+		return 0;
+	case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+		/* HTTP/2 without TLS goes another way through lws. */
+		return strcasecmp(in, "websocket") == 0 ? 0 :
+		       refuse_upgrade(wsi);
 	case LWS_CALLBACK_HTTP:
 		return begin(wsi, r, in);
 	case LWS_CALLBACK_HTTP_BODY:

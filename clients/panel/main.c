@@ -25,7 +25,9 @@
 #include <unistd.h>
 
 #define TICK_US		10000
-#define CONNECTIONS_MAX	400
+#define CONNECTIONS_MAX	448		/* more than SHARE_CONNECTION: one more
+					 * can always be accepted, and then
+					 * another makes room */
 
 static volatile sig_atomic_t over;
 
@@ -74,8 +76,10 @@ static void on_tick(lws_sorted_usec_list_t *timer)
 	service_look(p->service);
 	children_look(p->children);
 	live_look(p->live);
-	if (live_is_new_point(p->live))
+	if (live_is_new_point(p->live)) {
+		shares_look(p->shares);
 		socket_tell_all(p);
+	}
 	lws_sul_schedule(p->lws, 0, &p->timer, on_tick, TICK_US);
 }
 
@@ -120,7 +124,7 @@ static int open_server(struct panel *p)
 	info.keepalive_timeout = 15;
 	info.timeout_secs_ah_idle = 5;
 	info.max_http_header_data = 4096;
-	info.max_http_header_pool = 64;
+	info.max_http_header_pool = CONNECTIONS_MAX;
 	info.ka_time = 10;
 	info.ka_interval = 5;
 	info.ka_probes = 3;
@@ -154,11 +158,13 @@ static int open_parts(struct panel *p)
 		return fail(EX_NOINPUT, what, "make panel makes it; [panel] "
 			    "assets says where it is");
 	}
-	p->sessions = sessions_create();
+	p->shares = shares_create();
+	p->sessions = sessions_create(p->shares);
 	p->children = children_create();
-	if (!p->sessions || !p->children || live_create(&p->live, c) < 0)
+	if (!p->shares || !p->sessions || !p->children ||
+	    live_create(&p->live, c) < 0)
 		return fail(EX_OSERR, "out of memory", "some MB");
-	p->service = service_create(c->name);
+	p->service = service_create(c->name, p->shares);
 	if (!p->service)
 		return fail(EX_OSERR, "out of memory", "some MB");
 	service_on_event(p->service, on_event, p);
@@ -178,6 +184,9 @@ static void close_parts(struct panel *p)
 	children_destroy(p->children);
 	live_destroy(p->live);
 	sessions_destroy(p->sessions);
+	for (int i = 0; i < PANEL_CHECKED_ROOM; i++)
+		share_give(&p->checked[i].share);
+	shares_destroy(p->shares);
 	assets_free(p->assets);
 	json_decref(p->told);
 	free(p->delta);

@@ -16,18 +16,27 @@
 #include "config.h"
 #include "live.h"
 #include "session.h"
+#include "share.h"
+#include "visitor.h"
 
 #include <jansson.h>
 #include <libwebsockets.h>
 
-#define PANEL_BROWSERS_MAX	128
 #define PANEL_BODY_MAX		(64u << 20)	/* of a job's text */
 #define PANEL_NOTES		200
+#define PANEL_CHECKED_ROOM	16	/* more than SHARE_PATH are kept */
 
 /* A line of the panel's own log: who did what. */
 struct panel_note {
 	int64_t utime_ms;
 	char text[320];
+};
+
+/* The path of a text that was checked. */
+struct checked {
+	struct share share;
+	char id[33];			/* "": none */
+	int fd;
 };
 
 struct browser;
@@ -52,15 +61,12 @@ struct panel {
 					 * it */
 	uint64_t tellings;
 	struct browser *browsers;
-	int nbrowsers;
+	struct shares *shares;
 	struct panel_note note[PANEL_NOTES];
 	uint64_t notes;
-	int bodies;			/* uploads under way */
 	double past_owed_s, past_at_s;	/* time spent on answers about the
 					 * past */
-	char checked_path[8][33];	/* ids of the last checked texts */
-	int checked_fd[8];		/* the paths of these texts */
-	unsigned int checked;
+	struct checked checked[PANEL_CHECKED_ROOM];
 };
 
 /**
@@ -119,6 +125,8 @@ void socket_answer(struct browser *b, int64_t n, int code, const char *reason,
 struct press *socket_press(struct browser *b);
 
 struct session *socket_session(struct browser *b);
+/** socket_who() - for whom counts what the browser asks for. */
+void socket_who(struct browser *b, struct share_who *ret);
 struct panel *socket_panel(struct browser *b);
 
 /* -- verbs.c: what a browser may ask for ---------------------------------- */
@@ -128,6 +136,14 @@ void verbs_do(struct browser *b, const json_t *request);
 
 /** verbs_forget() - say that this browser is gone. */
 void verbs_forget(struct browser *b);
+
+enum verbs_urge { VERBS_ASK, VERBS_ACT, VERBS_END };
+
+/**
+ * verbs_who() - for whom a question counts, and how it goes before others: what
+ * ends a motion before all, acts before what is only asked.
+ */
+void verbs_who(struct browser *b, enum verbs_urge urge, struct share_who *ret);
 
 /** verbs_hello() - what a page has to know, once. */
 json_t *verbs_hello(struct panel *p, const struct session *s);

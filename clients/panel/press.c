@@ -34,12 +34,14 @@ static void on_answer(void *arg, const struct service_answer *a)
 static void pass_on(struct browser *b, double mm_s)
 {
 	struct press *p = socket_press(b);
+	struct share_who who;
 	char text[64];
 	const struct service_question q = {
 		.verb = "jog-on", .job = "", .text = text, .arg = mm_s,
-		.flags = SERVICE_ONCE,
+		.flags = SERVICE_ONCE, .who = &who,
 	};
 
+	verbs_who(b, VERBS_ACT, &who);
 	snprintf(text, sizeof(text), "%s %u%s", p->axis, p->number,
 		 p->begun ? "" : " begin");
 	service_ask(socket_panel(b)->service, &q, on_answer, p);

@@ -4,6 +4,7 @@
 
 #include "submission.h"
 #include "talk.h"
+#include "talk_stop.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -19,10 +20,12 @@
 #define OPEN_S		1.0		/* between two tries to open the
 					 * channel */
 #define SENDINGS	2
+#define EDMD_S		0.2		/* edmd answers in a period */
 
 /* A question that is under way; the library calls back with it. */
 struct asking {
 	struct asking *next;
+	struct share share;
 	struct service *service;
 	service_done_fn done;		/* NULL: nobody waits for it any more */
 	void *arg;
@@ -38,6 +41,7 @@ struct sending {
 
 struct service {
 	const char *machine;
+	struct shares *shares;
 	struct talk *talk;		/* NULL: not yet */
 	char why[TALK_SAID_MAX];
 	double tried_s;
@@ -73,13 +77,14 @@ static void try_open(struct service *a)
 	talk_on_event(a->talk, on_event, a);
 }
 
-struct service *service_create(const char *machine)
+struct service *service_create(const char *machine, struct shares *shares)
 {
 	struct service *a = calloc(1, sizeof(*a));
 
 	if (!a)
 		return NULL;
 	a->machine = machine;
+	a->shares = shares;
 	a->status.eta_s = -1;
 	try_open(a);
 	return a;
@@ -101,10 +106,11 @@ void service_destroy(struct service *a)
 		free_sending(&a->sending[i]);
 	talk_close(a->talk);
 	while (a->askings) {
-		struct asking *next = a->askings->next;
+		struct asking *q = a->askings;
 
-		free(a->askings);
-		a->askings = next;
+		share_give(&q->share);
+		a->askings = q->next;
+		free(q);
 	}
 	free(a);
 }
@@ -120,19 +126,39 @@ const char *service_why(const struct service *a)
 	return a->talk ? talk_why(a->talk) : a->why;
 }
 
+static void asking_free(struct asking *q)
+{
+	struct asking **at = &q->service->askings;
+
+	share_give(&q->share);
+	while (*at != q)
+		at = &(*at)->next;
+	*at = q->next;
+	free(q);
+}
+
+static void on_taken(void *arg, const char *why)
+{
+	struct asking *q = arg;
+
+	talk_forget(q->service->talk, q);
+	if (q->done)
+		q->done(q->arg, &(struct service_answer) {
+			.code = EX_TEMPFAIL, .reason = why, .body = "",
+		});
+	asking_free(q);
+}
+
 static void on_answer(void *arg, int err, const struct talk_ack *ack)
 {
 	struct asking *q = arg;
-	struct asking **at = &q->service->askings;
 	const struct service_answer late = {
 		.code = EX_UNAVAILABLE, .body = "",
 		.reason = "edmd-jobs did not answer: it may have been done, or "
 			  "not; systemctl status edmd-jobs",
 	};
 
-	while (*at != q)
-		at = &(*at)->next;
-	*at = q->next;
+	share_give(&q->share);
 	if (q->done && err < 0)
 		q->done(q->arg, &late);
 	else if (q->done)
@@ -140,7 +166,24 @@ static void on_answer(void *arg, int err, const struct talk_ack *ack)
 			.code = ack->code, .reason = ack->reason,
 			.body = ack->body,
 		});
-	free(q);
+	asking_free(q);
+}
+
+/* There is no edmd-jobs, nor a key of it: edmd itself can still end motion. */
+static int ask_edmd(const struct service *a, const struct talk_question *q,
+		    service_done_fn done, void *arg)
+{
+	struct talk_answer got;
+
+	if (!talk_stop_is(q->verb) ||
+	    talk_stop_ask(a->machine, q->verb, EDMD_S, &got) < 0)
+		return -ENOTCONN;
+	if (done)
+		done(arg, &(struct service_answer) {
+			.code = got.code, .reason = got.reason, .body = "",
+		});
+	talk_answer_free(&got);
+	return 0;
 }
 
 int service_ask(struct service *a, const struct service_question *ask,
@@ -154,19 +197,25 @@ int service_ask(struct service *a, const struct service_question *ask,
 	int err;
 
 	if (!a->talk)
-		return -ENOTCONN;
+		return ask_edmd(a, &q, done, arg);
 	n = calloc(1, sizeof(*n));
 	if (!n)
 		return -EAGAIN;
 	*n = (struct asking) { .next = a->askings, .service = a, .done = done,
-			       .arg = arg };
+			       .arg = arg,
+			       .share = { .kind = SHARE_QUESTION,
+					  .end = on_taken, .arg = n } };
+	err = share_take(a->shares, &n->share, ask->who);
+	if (err) {
+		free(n);
+		return -EAGAIN;
+	}
+	n->next = a->askings;
 	a->askings = n;
 	err = talk_send(a->talk, &q, ask->flags & SERVICE_ONCE ? ONCE_S :
 			GIVE_UP_S, on_answer, n);
-	if (err) {
-		a->askings = n->next;
-		free(n);
-	}
+	if (err)
+		asking_free(n);
 	return err ? -EAGAIN : 0;
 }
 

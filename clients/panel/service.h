@@ -12,6 +12,8 @@
 #ifndef PANEL_SERVICE_H
 #define PANEL_SERVICE_H
 
+#include "share.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -40,6 +42,7 @@ struct service_question {
 	const char *verb, *job, *text;	/* job and text: NULL means "" */
 	double arg;
 	unsigned int flags;
+	const struct share_who *who;	/* for whom it counts */
 };
 
 /* The code is one of messages/README.md.  Lent until the callback returns. */
@@ -66,7 +69,7 @@ typedef void (*service_event_fn)(void *arg, const char *kind, const char *text);
  *
  * Return: NULL if there is no memory.
  */
-struct service *service_create(const char *machine);
+struct service *service_create(const char *machine, struct shares *shares);
 /**
  * service_destroy() - @a may be NULL.  The callback of a question that is still
  * open is never called.
@@ -84,7 +87,9 @@ void service_look(struct service *a);
 
 /**
  * service_ask() - send a question or a verb.  @done is called once, from
- * service_look(), unless service_forget() was called for @arg.
+ * service_look(), or at once if only edmd itself can be asked; never after
+ * service_forget() was called for @arg.  If the question has to make room for
+ * another one, it is called with code 75.
  *
  * Return: 0; -EAGAIN: too many questions are open; -ENOTCONN: see
  * service_why().

@@ -2,6 +2,7 @@
 /* session.c - cookies, tokens, and attempts to log in */
 #include "session.h"
 #include "clocks.h"
+#include "visitor.h"
 
 #include <sodium.h>
 #include <stdio.h>
@@ -17,15 +18,18 @@
 #define TRIES_ALL	30		/* attempts of all addresses in TRY_S */
 #define TRY_S		60
 #define PLACES		64
+#define SESSIONS_ROOM	512		/* more than there may be */
 
 struct place {
 	char address[SESSION_ADDRESS_MAX];
 	int tries;
+	bool known;			/* somebody has logged in from here */
 	int64_t since_s;
 };
 
 struct sessions {
-	struct session session[SESSIONS_MAX];
+	struct shares *shares;
+	struct session session[SESSIONS_ROOM];
 	struct place place[PLACES];
 	struct place all;
 	struct stat users;		/* the time of the file at the last
@@ -52,20 +56,27 @@ enum role role_parse(const char *name)
 	return ROLE_NONE;
 }
 
-struct sessions *sessions_create(void)
+struct sessions *sessions_create(struct shares *shares)
 {
-	return calloc(1, sizeof(struct sessions));
+	struct sessions *s = calloc(1, sizeof(*s));
+
+	if (s)
+		s->shares = shares;
+	return s;
 }
 
 void sessions_destroy(struct sessions *s)
 {
-	if (s)
-		sodium_memzero(s, sizeof(*s));
+	if (!s)
+		return;
+	for (int i = 0; i < SESSIONS_ROOM; i++)
+		session_end(&s->session[i]);
 	free(s);
 }
 
 void session_end(struct session *session)
 {
+	share_give(&session->share);
 	sodium_memzero(session, sizeof(*session));
 }
 
@@ -93,7 +104,7 @@ void sessions_look(struct sessions *s, const char *path)
 	if (is_same_file(&now, &s->users))
 		return;
 	s->users = now;
-	for (int i = 0; i < SESSIONS_MAX; i++) {
+	for (int i = 0; i < SESSIONS_ROOM; i++) {
 		struct session *t = &s->session[i];
 
 		if (t->hash[0] && (session_user_find(path, t->user, &u) < 0 ||
@@ -103,19 +114,19 @@ void sessions_look(struct sessions *s, const char *path)
 	}
 }
 
-static struct session *make_room(struct sessions *s)
+static struct session *free_one(struct sessions *s)
 {
-	struct session *oldest = NULL;
+	int i = 0;
 
-	for (int i = 0; i < SESSIONS_MAX; i++) {
-		struct session *t = &s->session[i];
+	while (s->session[i].id[0])
+		i++;
+	return &s->session[i];
+}
 
-		if (!t->id[0])
-			return t;
-		if (t->sockets == 0 && (!oldest || t->used_s < oldest->used_s))
-			oldest = t;
-	}
-	return oldest;
+static void on_taken(void *arg, const char *why)
+{
+	(void)why;
+	session_end(arg);
 }
 
 static void draw_hex(char *to, size_t bytes)
@@ -127,21 +138,31 @@ static void draw_hex(char *to, size_t bytes)
 	sodium_memzero(drawn, sizeof(drawn));
 }
 
-struct session *session_begin(struct sessions *s, const char *user,
-			      enum role role, const char *address)
+struct session *session_begin(struct sessions *s, const struct visitor *v,
+			      const char *user, enum role role)
 {
-	struct session *n = make_room(s);
+	struct session *n = free_one(s);
+	struct share_who who;
 
-	if (!n)
+	snprintf(n->user, sizeof(n->user), "%s", user);
+	snprintf(n->address, sizeof(n->address), "%s", v->address);
+	n->role = role;
+	n->uid = v->uid;
+	n->begun_s = n->used_s = clock_ms(CLOCK_MONOTONIC) / 1000;
+	n->share = (struct share) { .kind = SHARE_SESSION, .end = on_taken,
+				    .arg = n, .idle = true };
+	visitor_who(v, n, &who);
+	if (share_take(s->shares, &n->share, &who))
 		return NULL;
-	session_end(n);
 	draw_hex(n->id, 32);
 	draw_hex(n->token, 16);
-	snprintf(n->user, sizeof(n->user), "%s", user);
-	snprintf(n->address, sizeof(n->address), "%s", address);
-	n->role = role;
-	n->begun_s = n->used_s = clock_ms(CLOCK_MONOTONIC) / 1000;
 	return n;
+}
+
+void session_hold(struct session *session, int more)
+{
+	session->sockets += more;
+	session->share.idle = session->sockets == 0;
 }
 
 struct session *session_by_id(struct sessions *s, const char *id)
@@ -150,7 +171,7 @@ struct session *session_by_id(struct sessions *s, const char *id)
 
 	if (strlen(id) != SESSION_ID_BYTES - 1)
 		return NULL;
-	for (int i = 0; i < SESSIONS_MAX; i++) {
+	for (int i = 0; i < SESSIONS_ROOM; i++) {
 		struct session *t = &s->session[i];
 
 		if (!t->id[0] || sodium_memcmp(t->id, id,
@@ -161,6 +182,7 @@ struct session *session_by_id(struct sessions *s, const char *id)
 			return NULL;
 		}
 		t->used_s = at_s;
+		share_use(&t->share);
 		return t;
 	}
 	return NULL;
@@ -197,7 +219,8 @@ static struct place *place_of(struct sessions *s, const char *address)
 	for (int i = 0; i < PLACES; i++) {
 		if (strcmp(s->place[i].address, address) == 0)
 			return &s->place[i];
-		if (s->place[i].since_s < oldest->since_s)
+		if (oldest->known != s->place[i].known ? oldest->known :
+		    s->place[i].since_s < oldest->since_s)
 			oldest = &s->place[i];
 	}
 	*oldest = (struct place) {
@@ -221,14 +244,20 @@ static int count_try(struct place *p, int most)
 	return 0;
 }
 
+/* Many strangers together do not keep those out who have logged in before. */
 int session_may_try(struct sessions *s, const char *address)
 {
-	const int wait_s = count_try(place_of(s, address), TRIES_MAX);
+	struct place *p = place_of(s, address);
+	const int wait_s = count_try(p, TRIES_MAX);
 
-	return wait_s ? wait_s : count_try(&s->all, TRIES_ALL);
+	return wait_s || p->known ? wait_s : count_try(&s->all, TRIES_ALL);
 }
 
 void session_try_ok(struct sessions *s, const char *address)
 {
-	place_of(s, address)->tries = 0;
+	struct place *p = place_of(s, address);
+
+	p->tries -= p->tries > 0;
+	s->all.tries -= !p->known && s->all.tries > 0;
+	p->known = true;
 }

@@ -16,13 +16,14 @@
 #ifndef PANEL_SESSION_H
 #define PANEL_SESSION_H
 
+#include "share.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 enum role { ROLE_NONE, ROLE_VIEWER, ROLE_OPERATOR, ROLE_SERVICE };
 
-#define SESSIONS_MAX		256
 #define SESSION_USER_MAX	32
 #define SESSION_ID_BYTES	65	/* hex, with its NUL */
 #define SESSION_HASH_MAX	160
@@ -30,6 +31,7 @@ enum role { ROLE_NONE, ROLE_VIEWER, ROLE_OPERATOR, ROLE_SERVICE };
 #define SESSION_NOBODY		(~0u)
 
 struct session {
+	struct share share;
 	char id[SESSION_ID_BYTES];	/* of the cookie; "": the slot is
 					 * free */
 	char token[33];
@@ -40,7 +42,7 @@ struct session {
 					 * SESSION_NOBODY */
 	char hash[SESSION_HASH_MAX];	/* the hash at the login; "": none */
 	int sockets;			/* browsers that hold the session
-					 * open */
+					 * open: session_hold() */
 	int64_t begun_s, used_s;
 };
 
@@ -51,18 +53,22 @@ struct session_user {
 };
 
 struct sessions;
+struct visitor;
 
 /** sessions_create() - Return: NULL if there is no memory. */
-struct sessions *sessions_create(void);
+struct sessions *sessions_create(struct shares *shares);
 void sessions_destroy(struct sessions *s);
 
 /**
- * session_begin() - begin a session. If all slots are used, it takes the one
- * that was not used for the longest time and is not held by a browser. Return:
- * NULL if all are held.
+ * session_begin() - begin a session of who came by @v.
+ *
+ * Return: NULL if there are too many, and none has to make room.
  */
-struct session *session_begin(struct sessions *s, const char *user,
-			      enum role role, const char *address);
+struct session *session_begin(struct sessions *s, const struct visitor *v,
+			      const char *user, enum role role);
+
+/** session_hold() - one browser more, or less (-1), holds it open. */
+void session_hold(struct session *session, int more);
 
 /**
  * session_find() - find a session by the value of a Cookie header; NULL if
@@ -89,15 +95,16 @@ void sessions_look(struct sessions *s, const char *path);
 bool session_token_ok(const struct session *session, const char *token);
 
 /**
- * session_user_find() - find a user in the file @path. Return: 0; -ENOENT: no
- * such user or no such file; -EBADMSG; -errno.
+ * session_user_find() - find a user in the file @path. Return: 0; -ESRCH: no
+ * such user; -EBADMSG: a line cannot be understood; -errno: it cannot be read.
  */
 int session_user_find(const char *path, const char *name,
 		      struct session_user *ret);
 
 /**
- * session_user_put() - add or change a user: @path is written anew, with mode
- * 600.
+ * session_user_put() - add or change a user: @path is written anew.  If root
+ * does it, the file stays with its owner, or goes to that of its folder, and
+ * the group of the service may read it.
  */
 int session_user_put(const char *path, const struct session_user *user);
 
@@ -106,7 +113,11 @@ int session_user_put(const char *path, const struct session_user *user);
  * the seconds to wait before the next one.
  */
 int session_may_try(struct sessions *s, const char *address);
-/** session_try_ok() - the password was right. */
+/**
+ * session_try_ok() - the password was right: this attempt does not count.  What
+ * failed from the same address counts on, since it may have been for another
+ * user.
+ */
 void session_try_ok(struct sessions *s, const char *address);
 
 /**
@@ -115,12 +126,6 @@ void session_try_ok(struct sessions *s, const char *address);
  */
 enum role session_local_role(unsigned int uid, enum role most,
 			     char ret_name[SESSION_USER_MAX]);
-
-/**
- * session_peer_uid() - the user of this host who owns the other end of the
- * loopback connection @fd. Return: 0, or -ENOENT.
- */
-int session_peer_uid(int fd, unsigned int *ret);
 
 /**
  * role_name() - "viewer" and so on. role_parse() - the reverse; ROLE_NONE if

@@ -8,6 +8,7 @@
  */
 #include "panel.h"
 #include "clocks.h"
+#include "frames.h"
 #include "press.h"
 
 #include <stdlib.h>
@@ -21,8 +22,6 @@
 #define RATE_PER_S	60.0		/* most requests of a browser at a
 					 * time */
 #define RATE_BURST	120.0
-#define ADDRESS_MAX	64		/* most browsers of one address that is
-					 * not local */
 
 struct answer {
 	struct answer *next;
@@ -32,6 +31,7 @@ struct answer {
 
 struct browser {
 	struct browser *next;
+	struct share share;
 	struct panel *panel;
 	struct lws *wsi;
 	char session[SESSION_ID_BYTES];
@@ -65,6 +65,11 @@ struct press *socket_press(struct browser *b)
 struct session *socket_session(struct browser *b)
 {
 	return session_by_id(b->panel->sessions, b->session);
+}
+
+void socket_who(struct browser *b, struct share_who *ret)
+{
+	visitor_who(visitor_of(b->wsi), socket_session(b), ret);
 }
 
 /* -- Out ------------------------------------------------------------------ */
@@ -336,33 +341,38 @@ static int on_receive(struct browser *b, const char *in, size_t len)
 	return err;
 }
 
-static bool is_crowded(struct panel *p, const char *address)
-{
-	int n = 0;
-
-	if (p->nbrowsers >= PANEL_BROWSERS_MAX)
-		return true;
-	for (struct browser *b = p->browsers; b; b = b->next) {
-		const struct session *s = socket_session(b);
-
-		n += s && strcmp(s->address, address) == 0;
-	}
-	return !p->local && n >= ADDRESS_MAX;
-}
-
 /* This refuses before the web socket begins: so nothing of a stranger is
  * kept. */
 static int filter(struct panel *p, struct lws *wsi)
 {
-	const struct session *s = http_session(p, wsi);
-
 	if (!http_is_ours(p, wsi, true)) {
 		panel_note(p, "a connection of another site was refused");
 		return -1;
 	}
-	if (!s || is_crowded(p, s->address))
-		return -1;
-	return 0;
+	return http_session(p, wsi) &&
+	       frames_begin(lws_get_socket_fd(wsi)) ? 0 : -1;
+}
+
+static void on_taken(void *arg, const char *why)
+{
+	(void)why;
+	drop(arg);
+}
+
+static int take_share(struct browser *b)
+{
+	struct share_who who;
+
+	b->share = (struct share) { .kind = SHARE_BROWSER, .end = on_taken,
+				    .arg = b };
+	socket_who(b, &who);
+	if (share_take(b->panel->shares, &b->share, &who) == 0) {
+		visitor_of(b->wsi)->share.idle = false;
+		return 0;
+	}
+	lws_close_reason(b->wsi, 4429, (unsigned char *)"crowd", 5);
+	b->panel = NULL;
+	return -1;
 }
 
 static int begin(struct browser *b, struct panel *p, struct lws *wsi)
@@ -376,9 +386,10 @@ static int begin(struct browser *b, struct panel *p, struct lws *wsi)
 				   .tokens_s = clock_s(CLOCK_MONOTONIC) };
 	b->last = &b->first;
 	memcpy(b->session, s->id, sizeof(b->session));
-	s->sockets++;
+	if (take_share(b))
+		return -1;
+	session_hold(s, 1);
 	p->browsers = b;
-	p->nbrowsers++;
 	queue_json(b, json_pack("{s:o}", "hello", verbs_hello(p, s)));
 	return 0;
 }
@@ -390,13 +401,13 @@ static void end(struct browser *b)
 
 	press_end(b);
 	verbs_forget(b);
+	share_give(&b->share);
 	if (s)
-		s->sockets--;
+		session_hold(s, -1);
 	while (*at && *at != b)
 		at = &(*at)->next;
 	if (*at)
 		*at = b->next;
-	b->panel->nbrowsers--;
 	while (b->first) {
 		struct answer *next = b->first->next;
 

@@ -7,26 +7,25 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <grp.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
+#include <libgen.h>
 #include <pwd.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #define GROUPS_MAX	256
 #define LINE_MAX_BYTES	320
+#define SERVICE_USER	"edm-panel"
 
-/* Return: 0; -ENOENT for a line of nobody; -EBADMSG. */
+/* Return: 0; -ESRCH for a line of nobody; -EBADMSG. */
 static int read_line(const char *text, struct session_user *ret)
 {
 	char role[16];
 
 	if (text[strspn(text, " \t\n")] == '\0' || text[0] == '#')
-		return -ENOENT;
+		return -ESRCH;
 	if (sscanf(text, "%31s %15s %159s", ret->name, role, ret->hash) != 3)
 		return -EBADMSG;
 	ret->role = role_parse(role);
@@ -38,15 +37,17 @@ int session_user_find(const char *path, const char *name,
 {
 	FILE *f = fopen(path, "re");
 	char text[LINE_MAX_BYTES];
-	int err = -ENOENT;
+	int err = -ESRCH;
 
 	if (!f)
 		return -errno;
-	while (err == -ENOENT && fgets(text, sizeof(text), f)) {
+	while (err == -ESRCH && fgets(text, sizeof(text), f)) {
 		err = read_line(text, ret);
 		if (err == 0 && strcmp(ret->name, name) != 0)
-			err = -ENOENT;
+			err = -ESRCH;
 	}
+	if (ferror(f))
+		err = -errno;
 	fclose(f);
 	return err;
 }
@@ -61,6 +62,24 @@ static void copy_others(FILE *from, FILE *to, const char *name)
 			fputs(text, to);
 }
 
+/* The service reads the file and does not write it. */
+static int give_to_service(int fd, const char *path)
+{
+	const struct passwd *service = getpwnam(SERVICE_USER);
+	char folder[300];
+	struct stat st;
+
+	if (geteuid() != 0)
+		return 0;
+	snprintf(folder, sizeof(folder), "%s", path);
+	if (stat(path, &st) < 0 && stat(dirname(folder), &st) < 0)
+		return -errno;
+	if (fchown(fd, st.st_uid, service ? service->pw_gid : st.st_gid) < 0 ||
+	    fchmod(fd, service ? 0640 : 0600) < 0)
+		return -errno;
+	return 0;
+}
+
 int session_user_put(const char *path, const struct session_user *user)
 {
 	char made[300];
@@ -71,10 +90,11 @@ int session_user_put(const char *path, const struct session_user *user)
 	fd = open(made, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
 	if (fd < 0)
 		return -errno;
-	to = fdopen(fd, "w");
+	err = give_to_service(fd, path);
+	to = err ? NULL : fdopen(fd, "w");
 	if (!to) {
 		close(fd);
-		return -ENOMEM;
+		return err ? err : -ENOMEM;
 	}
 	from = fopen(path, "re");
 	if (from) {
@@ -115,66 +135,4 @@ enum role session_local_role(unsigned int uid, enum role most,
 	if (uid == 0 || uid == geteuid() || (p && is_in_group(p, "edm")))
 		return most;
 	return ROLE_VIEWER;
-}
-
-/* An address and a port as /proc/net/tcp and tcp6 write them. */
-static const char *format_end(char to[48], const struct sockaddr_storage *a)
-{
-	const struct sockaddr_in *v4 = (const struct sockaddr_in *)a;
-	const struct sockaddr_in6 *v6 = (const struct sockaddr_in6 *)a;
-	uint32_t word[4];
-
-	if (a->ss_family == AF_INET) {
-		snprintf(to, 48, "%08X:%04X", v4->sin_addr.s_addr,
-			 ntohs(v4->sin_port));
-		return "/proc/net/tcp";
-	}
-	if (a->ss_family != AF_INET6)
-		return NULL;
-	memcpy(word, &v6->sin6_addr, sizeof(word));
-	if (IN6_IS_ADDR_V4MAPPED(&v6->sin6_addr)) {
-		snprintf(to, 48, "%08X:%04X", word[3], ntohs(v6->sin6_port));
-		return "/proc/net/tcp";
-	}
-	snprintf(to, 48, "%08X%08X%08X%08X:%04X", word[0], word[1], word[2],
-		 word[3], ntohs(v6->sin6_port));
-	return "/proc/net/tcp6";
-}
-
-/* Find the file that has the row of the other end of @fd, and how that file
- * writes the two ends. */
-static const char *find_ends(int fd, char peer[48], char own[48])
-{
-	struct sockaddr_storage a, b;
-	socklen_t na = sizeof(a), nb = sizeof(b);
-
-	if (getpeername(fd, (struct sockaddr *)&a, &na) < 0 ||
-	    getsockname(fd, (struct sockaddr *)&b, &nb) < 0 ||
-	    !format_end(own, &b))
-		return NULL;
-	return format_end(peer, &a);
-}
-
-/*
- * Both ends are compared, because another user may have a connection to
- * somewhere else from the same port. A connection that its user has closed
- * belongs to nobody, and the kernel shows it as root's. So only a connection
- * that is still held counts.
- */
-int session_peer_uid(int fd, unsigned int *ret)
-{
-	char peer[48], own[48], local[48], remote[48], text[320];
-	const char *path = find_ends(fd, peer, own);
-	FILE *f = path ? fopen(path, "re") : NULL;
-	unsigned int state;
-	bool found = false;
-
-	while (f && !found && fgets(text, sizeof(text), f))
-		found = sscanf(text, " %*d: %47s %47s %x %*s %*s %*s %u",
-			       local, remote, &state, ret) == 4 &&
-			strcmp(local, peer) == 0 && strcmp(remote, own) == 0 &&
-			state == TCP_ESTABLISHED;
-	if (f)
-		fclose(f);
-	return found ? 0 : -ENOENT;
 }

@@ -35,7 +35,7 @@ struct verb {
 		    const json_t *o);
 	const char *asks;		/* the verb of edmd-jobs; NULL: the same
 					 * name */
-	bool act;			/* it does something: note it in the
+	enum verbs_urge act;		/* not VERBS_ASK: note it in the
 					 * journal */
 	unsigned int flags;		/* SERVICE_*, NUMBER, LINES */
 };
@@ -154,11 +154,19 @@ static void describe(struct pending *p, const struct session *s,
 			 sizeof(p->what) - strlen(p->what), " %g", q->arg);
 }
 
+void verbs_who(struct browser *b, enum verbs_urge urge, struct share_who *ret)
+{
+	socket_who(b, ret);
+	ret->rank += (int)urge * (ROLE_SERVICE + 1);
+}
+
 static void run_ask(struct browser *b, const struct verb *v, int64_t n,
 		    const json_t *o)
 {
+	struct share_who who;
 	/* A JSON null takes a value back; messages/README.md calls this NaN. */
 	const struct service_question q = {
+		.who = &who,
 		.verb = v->asks ? v->asks : v->name, .flags = v->flags,
 		.job = text_of(o, "job"), .text = text_of(o, "text"),
 		.arg = json_is_null(json_object_get(o, "arg")) ? NAN :
@@ -166,6 +174,7 @@ static void run_ask(struct browser *b, const struct verb *v, int64_t n,
 	};
 	struct pending *p = pend(b, v, n);
 
+	verbs_who(b, v->act, &who);
 	if (p && v->act)
 		describe(p, socket_session(b), &q);
 	if (p && service_ask(socket_panel(b)->service, &q, on_answer, p) == 0)
@@ -381,42 +390,42 @@ static void run_tech(struct browser *b, const struct verb *v, int64_t n,
 
 /* clang-format off */
 static const struct verb verbs[] = {
-	{ "start",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "hold",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "resume",   ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "stop",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "retract",  ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "step",     ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "jog",      ROLE_OPERATOR, run_ask, NULL, true,
+	{ "start",    ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, 0 },
+	{ "hold",     ROLE_OPERATOR, run_ask, NULL, VERBS_END, 0 },
+	{ "resume",   ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, 0 },
+	{ "stop",     ROLE_OPERATOR, run_ask, NULL, VERBS_END, 0 },
+	{ "retract",  ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "step",     ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "jog",      ROLE_OPERATOR, run_ask, NULL, VERBS_ACT,
 	  SERVICE_ONCE | NUMBER },
-	{ "press",    ROLE_OPERATOR, run_press, NULL, false, NUMBER },
-	{ "home",     ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "override", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "estop",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "reset",    ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "set",      ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "remove",   ROLE_OPERATOR, run_ask, NULL, true, 0 },
-	{ "move",     ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "electrode-add", ROLE_OPERATOR, run_ask, NULL, true, NUMBER | LINES },
-	{ "electrode-set", ROLE_OPERATOR, run_ask, NULL, true, NUMBER | LINES },
-	{ "electrode-remove", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "electrode-use", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "electrode-measure", ROLE_OPERATOR, run_ask, NULL, true, NUMBER },
-	{ "electrodes", ROLE_VIEWER, run_ask, NULL, false, NUMBER },
-	{ "offset",   ROLE_OPERATOR, run_ask, NULL, true, LINES },
-	{ "offsets",  ROLE_VIEWER,   run_ask, NULL, false, 0 },
-	{ "text",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
-	{ "queue",    ROLE_VIEWER,   run_ask, NULL, false, 0 },
-	{ "show",     ROLE_VIEWER,   run_ask, NULL, false, 0 },
-	{ "past",     ROLE_VIEWER,   run_ask, "history", false, 0 },
-	{ "alarms",   ROLE_VIEWER,   run_ask, NULL, false, 0 },
-	{ "history",  ROLE_VIEWER,   run_history, NULL, false, 0 },
-	{ "latency",  ROLE_VIEWER,   run_latency, NULL, false, 0 },
-	{ "notes",    ROLE_VIEWER,   run_notes, NULL, false, 0 },
-	{ "doctor",   ROLE_VIEWER,   run_doctor, NULL, false, 0 },
-	{ "fleet",    ROLE_VIEWER,   run_fleet, NULL, false, 0 },
-	{ "log",      ROLE_OPERATOR, run_log, NULL, false, 0 },
-	{ "tech",     ROLE_VIEWER,   run_tech, NULL, false, 0 },
+	{ "press",    ROLE_OPERATOR, run_press, NULL, VERBS_ASK, NUMBER },
+	{ "home",     ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, 0 },
+	{ "override", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "estop",    ROLE_OPERATOR, run_ask, NULL, VERBS_END, 0 },
+	{ "reset",    ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, 0 },
+	{ "set",      ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "remove",   ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, 0 },
+	{ "move",     ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "electrode-add", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER | LINES },
+	{ "electrode-set", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER | LINES },
+	{ "electrode-remove", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "electrode-use", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "electrode-measure", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "electrodes", ROLE_VIEWER, run_ask, NULL, VERBS_ASK, NUMBER },
+	{ "offset",   ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, LINES },
+	{ "offsets",  ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
+	{ "text",     ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
+	{ "queue",    ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
+	{ "show",     ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
+	{ "past",     ROLE_VIEWER,   run_ask, "history", VERBS_ASK, 0 },
+	{ "alarms",   ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
+	{ "history",  ROLE_VIEWER,   run_history, NULL, VERBS_ASK, 0 },
+	{ "latency",  ROLE_VIEWER,   run_latency, NULL, VERBS_ASK, 0 },
+	{ "notes",    ROLE_VIEWER,   run_notes, NULL, VERBS_ASK, 0 },
+	{ "doctor",   ROLE_VIEWER,   run_doctor, NULL, VERBS_ASK, 0 },
+	{ "fleet",    ROLE_VIEWER,   run_fleet, NULL, VERBS_ASK, 0 },
+	{ "log",      ROLE_OPERATOR, run_log, NULL, VERBS_ASK, 0 },
+	{ "tech",     ROLE_VIEWER,   run_tech, NULL, VERBS_ASK, 0 },
 };
 /* clang-format on */
 

@@ -9,6 +9,7 @@
 #include "config.h"
 #include "interp/build.h"
 #include "shm.h"
+#include "standard.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -66,10 +67,11 @@ static void put_head(const struct flat *f, const struct interp_program *p)
 	json_decref(o);
 }
 
-static int put_path(const struct interp_program *p, double tolerance_mm)
+static int put_path(const struct machine_config *c,
+		    const struct interp_program *p, double tolerance_mm)
 {
 	struct flat f;
-	int err = flat_make(&f, p, tolerance_mm);
+	int err = flat_make(&f, p, c->wire.guides, tolerance_mm);
 
 	if (err == 0) {
 		put_head(&f, p);
@@ -102,7 +104,8 @@ static void read_start(const char *text, double start_mm[INTERP_NAXES])
 	}
 }
 
-static int lay_out(struct interp_build *b, uint32_t lines, const struct work *w)
+static int lay_out(const struct machine_config *c, struct interp_build *b,
+		   uint32_t lines, const struct work *w)
 {
 	const struct interp_build_about about = { .lines = lines,
 						  .name = w->name };
@@ -115,7 +118,7 @@ static int lay_out(struct interp_build *b, uint32_t lines, const struct work *w)
 		return put_failure("the program is too large",
 				   "a smaller one, or in parts");
 	err = interp_program_map(&p, block, bytes) == 0 ?
-	     put_path(&p, w->tolerance_mm) : EX_SOFTWARE;
+	     put_path(c, &p, w->tolerance_mm) : EX_SOFTWARE;
 	free(block);
 	return err;
 }
@@ -144,7 +147,7 @@ static int compile(const struct machine_config *c, const struct work *w,
 	if (err == -EINVAL)
 		rc = put_refusal(w->name, &d);
 	else if (err == 0)
-		rc = lay_out(b, lines, w);
+		rc = lay_out(c, b, lines, w);
 	else
 		rc = put_failure("reading it takes more memory than the panel "
 				 "allows", "a smaller program");
@@ -177,7 +180,7 @@ static int work_check(const struct machine_config *c, const struct work *w)
 	return err;
 }
 
-static int work_path(const struct work *w)
+static int work_path(const struct machine_config *c, const struct work *w)
 {
 	struct interp_program p;
 	const void *block;
@@ -189,7 +192,7 @@ static int work_path(const struct work *w)
 		return put_failure("the program is not there any more",
 				   "the one that is loaded");
 	err = interp_program_map(&p, block, bytes) == 0 ?
-	     put_path(&p, w->tolerance_mm) :
+	     put_path(c, &p, w->tolerance_mm) :
 	     put_failure("the program is damaged", "stop; send it again");
 	shm_program_unmap(block, bytes);
 	return err;
@@ -219,6 +222,7 @@ int work_run(const struct work *w)
 	static struct machine_config c;
 	struct interp_diag d = { .line = 0 };
 
+	standard_raw();
 	if (strcmp(w->what, "verify") == 0)
 		return work_verify();
 	if (config_read(&c, w->config, &d) < 0)
@@ -227,5 +231,5 @@ int work_run(const struct work *w)
 		return work_check(&c, w);
 	if (strcmp(w->what, "tech") == 0)
 		return page_tech_put(&c);
-	return work_path(w);
+	return work_path(&c, w);
 }

@@ -11,7 +11,7 @@
  * 8 bytes with its newline; then, if it says "ok", `points` times: place in mm
  * (double), all of them; X Y Z less `origin` (float), all of them; line
  * (uint32); kind (uint8, enum flat_kind); and, if `upper`, in between the last
- * two: U V (float).
+ * two: X Y of the upper guide (float).
  *
  * Exit: 0 done, 1 the answer is no, 70 no memory.
  */

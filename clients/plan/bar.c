@@ -4,6 +4,7 @@
  */
 #include "job.h"
 #include "clocks.h"
+#include "standard.h"
 
 #include <signal.h>
 #include <sys/ioctl.h>
@@ -77,7 +78,9 @@ static void say_bar(double share, const char *text)
 			 best.blocks, best.mm);
 	snprintf(line, sizeof(line), "[%s] %3.0f %% %.80s%s", bar, share * 100,
 		 text, so_far);
-	fprintf(stderr, "\r%.*s\033[K", columns() - 1, line);
+	standard_control(stderr, "\r");
+	fprintf(stderr, "%.*s", columns() - 1, line);
+	standard_control(stderr, "\033[K");
 }
 
 void bar_show(const struct job *j, double share, const char *text)
@@ -94,5 +97,5 @@ void bar_show(const struct job *j, double share, const char *text)
 void bar_end(const struct job *j)
 {
 	if (!j->o->quiet && isatty(STDERR_FILENO))
-		fprintf(stderr, "\r\033[K");
+		standard_control(stderr, "\r\033[K");
 }

@@ -279,7 +279,12 @@ double fewest_widest(struct fewest *f, double mm, uint32_t blocks,
 		     uint32_t *ret)
 {
 	double low = mm, high = mm + 0.32;
-	uint32_t *way = malloc((f->n + 1) * sizeof(*way));
+	uint32_t *way;
+
+	/* From the first node to the last there is one block only. */
+	if (blocks == 1)
+		return mm;
+	way = malloc((f->n + 1) * sizeof(*way));
 
 	while (way && high - low > WIDEST_MM && !bar_interrupted()) {
 		const double mid = (low + high) / 2;

@@ -19,7 +19,8 @@
 struct free_way {
 	const struct job *j;
 	const struct clearance *c;	/* lent */
-	uint32_t n;			/* nodes; first and last stay */
+	uint32_t n;			/* nodes; the last one stays */
+	bool mouth;			/* the first one may move, too */
 	double q[FREE_NODES_MAX][INTERP_NAXES];
 	double least_mm;		/* the least distance at the poses that
 					 * were tried; in an end zone, plus as
@@ -38,6 +39,16 @@ int free_init(struct free_way *w, const struct job *j,
 
 /** free_widen() - find as much clearance as possible in at most @rounds. */
 void free_widen(struct free_way *w, int rounds);
+
+/**
+ * free_straighten() - take the inner node @node away, if the bend there can be
+ * straightened while the way keeps about @keep_mm.
+ *
+ * All nodes may move for it.  The way that is left has one node less and has to
+ * be widened and proved.  Return: is it away?  If not, the way is as it was.
+ */
+bool free_straighten(struct free_way *w, uint32_t node, double keep_mm,
+		     int rounds);
 
 /** free_round() - round @q to whole pulses. */
 void free_round(const struct machine_config *c, double q[INTERP_NAXES]);

@@ -21,6 +21,7 @@ struct job_options {
 	double clearance_mm;		/* < 0: from the machine file's gap */
 	double chord_mm;		/* < 0: guessed from the meshes */
 	double end_zone_mm;
+	double budget_s;		/* of the processor, for a way out */
 	double end[INTERP_NAXES];	/* --end-pose, with end_given */
 	uint32_t end_axes;		/* bit per axis that --end-pose names;
 					 * the others are at 0 */

@@ -126,6 +126,8 @@ static const struct cmdline_row rows[] = {
 	  "error of the meshes' chords (guessed from bends)" },
 	{ "end-zone", "MM", CMDLINE_NUMBER, AT(end_zone_mm), 0, 1000, .help =
 	  "so near to the end pose the clearance falls to\nits own" },
+	{ "budget", "S", CMDLINE_NUMBER, AT(budget_s), 1, 1e6, .help =
+	  "seconds of the processor for the search of\n--end-pose (60)" },
 	{ "on-path", NULL, CMDLINE_FLAG, AT(on_path), .help =
 	  "nodes of the program only: move none off it" },
 	{ "no-pivot", NULL, CMDLINE_FLAG, AT(no_pivot), .help =
@@ -186,7 +188,7 @@ int main(int argc, char **argv)
 {
 	static struct job job;
 	struct job_options o = { .unit_mm = 1, .clearance_mm = -1,
-				 .chord_mm = -1 };
+				 .chord_mm = -1, .budget_s = 60 };
 	struct cmdline_given given;
 	int err = cmdline_take(&table, &o, argc, argv, &given);
 

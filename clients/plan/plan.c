@@ -10,6 +10,7 @@
 
 #include "check.h"
 #include "clocks.h"
+#include "mouth.h"
 #include "pullout.h"
 #include "repair.h"
 #include "spread.h"
@@ -23,6 +24,8 @@
 #include <time.h>
 
 #define WIDEN_ROUNDS	12
+#define STRAIGHTEN_ROUNDS	25
+#define STRAIGHT_SPARE_MM	0.005
 #define TOUCH_MM	0.01		/* nearer is as good as contact */
 
 static void say_contact(const struct plan *p, const struct check_result *r)
@@ -160,10 +163,9 @@ static void take_way(struct plan_way *w, const char *how,
 static void from_free(struct plan_way *w, const struct free_way *f,
 		      const struct job *j)
 {
-	w->how = "free nodes";
 	w->n = f->n;
 	memcpy(w->q, f->q, f->n * sizeof(*w->q));
-	for (uint32_t i = 1; i + 1 < w->n; i++)
+	for (uint32_t i = f->mouth ? 0 : 1; i + 1 < w->n; i++)
 		free_round(&j->config, w->q[i]);
 }
 
@@ -238,6 +240,50 @@ static void take_best(struct plan *p, const struct plan_way *w)
 		bar_best(w->n - 1, w->least_mm);
 }
 
+/* A way that was found from the end pose has no mouth that was asked for. */
+static bool mouth_moves(const struct plan *p)
+{
+	return p->j->o->end_given && !p->trial;
+}
+
+/* Is it better, and does the machine come to its mouth?  Then it is taken. */
+static bool take_moved(struct plan *p, const struct plan_way *w)
+{
+	struct mouth_lead in;
+
+	if (!is_better(p, w))
+		return false;
+	if (mouth_moves(p)) {
+		if (!mouth_find(p->j, &p->c, w->q[0], &in))
+			return false;
+		mouth_put(&in, &p->dense);
+	}
+	take_best(p, w);
+	return true;
+}
+
+static bool is_same(const struct plan_way *a, const struct plan_way *b)
+{
+	return a->how && a->n == b->n &&
+	       memcmp(a->q, b->q, a->n * sizeof(*a->q)) == 0;
+}
+
+/* Widen @w, prove it as @how. Return: is it to be written? */
+static bool widen(struct plan *p, const struct job *j, struct free_way *w,
+		  const char *how)
+{
+	static struct plan_way way;
+
+	free_widen(w, w->mouth ? 2 * WIDEN_ROUNDS : WIDEN_ROUNDS);
+	p->queries += w->queries;
+	from_free(&way, w, j);
+	way.how = how;
+	if (is_same(&p->best, &way))
+		return false;
+	plan_prove(j, &way, PROVE_COARSE_MM, &p->queries);
+	return take_moved(p, &way);
+}
+
 /* Along the nodes @at, then off them. Return: is it to be written? */
 static bool try_free(struct plan *p, const struct fewest *f,
 		     const uint32_t *at)
@@ -251,14 +297,35 @@ static bool try_free(struct plan *p, const struct fewest *f,
 	take_way(&way, NULL, f, at, n);
 	if (free_init(&w, f->j, &p->c, way.q, way.n))
 		return false;
-	free_widen(&w, WIDEN_ROUNDS);
-	p->queries += w.queries;
-	from_free(&way, &w, f->j);
-	plan_prove(f->j, &way, PROVE_COARSE_MM, &p->queries);
-	if (!is_better(p, &way))
-		return false;
-	take_best(p, &way);
-	return true;
+	w.mouth = mouth_moves(p);
+	return widen(p, f->j, &w, "free nodes");
+}
+
+/* Is there a node of the best way that can be taken away? */
+static bool straighten_one(struct plan *p, const struct job *j)
+{
+	const double keep_mm = p->c.mm + j->chord_mm + STRAIGHT_SPARE_MM;
+
+	for (uint32_t i = 1; i + 1 < p->best.n && !bar_interrupted(); i++) {
+		struct free_way w;
+
+		if (free_init(&w, j, &p->c, p->best.q, p->best.n))
+			return false;
+		w.mouth = mouth_moves(p);
+		if (free_straighten(&w, i, keep_mm, STRAIGHTEN_ROUNDS)) {
+			if (widen(p, j, &w, "straightened"))
+				return true;
+		} else {
+			p->queries += w.queries;
+		}
+	}
+	return false;
+}
+
+static void plan_straighten(struct plan *p, const struct job *j)
+{
+	while (p->best.n > 2 && straighten_one(p, j))
+		;
 }
 
 /*
@@ -282,6 +349,20 @@ static void plan_free(struct plan *p, struct fewest *f, const uint32_t *best)
 		try_free(p, f, best);
 }
 
+static void take_fewest(struct plan *p, const struct fewest *f,
+			const uint32_t *at, uint32_t blocks)
+{
+	take_way(&p->fewest, "fewest over nodes", f, at, blocks);
+	if (is_same(&p->greedy, &p->fewest)) {
+		p->fewest = p->greedy;
+		return;
+	}
+	prove_nodes(p, f, at, &p->fewest, f->j->o->on_path ?
+		    PROVE_FINE_MM : PROVE_COARSE_MM);
+	if (is_better(p, &p->fewest))
+		take_best(p, &p->fewest);
+}
+
 int plan_over(struct plan *p, const struct job *j,
 	      double (*q)[INTERP_NAXES], uint32_t n)
 {
@@ -302,14 +383,12 @@ int plan_over(struct plan *p, const struct job *j,
 		 fewest_search(&f, j->clear_mm, most, at);
 	if (blocks) {
 		fewest_widest(&f, j->clear_mm, blocks, at);
-		take_way(&p->fewest, "fewest over nodes", &f, at, blocks);
-		prove_nodes(p, &f, at, &p->fewest, j->o->on_path ?
-			    PROVE_FINE_MM : PROVE_COARSE_MM);
-		if (is_better(p, &p->fewest))
-			take_best(p, &p->fewest);
+		take_fewest(p, &f, at, blocks);
 	}
 	if (blocks && !j->o->on_path)
 		plan_free(p, &f, at);
+	if (p->best.how && !j->o->on_path && !p->trial)
+		plan_straighten(p, j);
 	p->queries += f.queries;
 	fewest_free(&f);
 	return p->best.how ? 0 : 1;
@@ -405,7 +484,8 @@ static int plan_nodes(struct plan *p)
 		return 1;
 	}
 	prove_best(p);
-	if (!p->j->o->no_pivot && !bar_interrupted())
+	/* Elsewhere there may be fewer blocks, but not fewer than one. */
+	if (!p->j->o->no_pivot && p->best.n > 2 && !bar_interrupted())
 		err = plan_pivot(p) == -ENOMEM ? EX_OSERR : 0;
 	return err;
 }
@@ -440,7 +520,8 @@ int plan_program(struct job *j)
 		err = check_clearance(j, p.dense.node[p.last].q, &p.c);
 	if (err == 0)
 		err = plan_check_end(&p, p.dense.node[p.last].q);
-	if (err == 0)
+	/* A way that was found is proved, or is to be widened. */
+	if (err == 0 && !j->o->end_given)
 		err = check_dense(&p);
 	if (err == 0)
 		err = plan_nodes(&p);

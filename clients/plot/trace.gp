@@ -15,8 +15,9 @@
 #	$jump $retract: time, place		$jumpat $retractat $begin $end
 #	$path0 (positioned) $path1 (cut): eight axes	$zoom: time, place, state
 
-if (svg) set terminal svg size 1600,1100 dynamic font 'DejaVu Sans,13' background '#ffffff'
-if (!svg) set terminal pngcairo size 1600,1100 font 'DejaVu Sans,11' background '#ffffff'
+page_x = 1600; page_y = 1100
+if (svg) set terminal svg size page_x,page_y dynamic font 'DejaVu Sans,13' background '#ffffff'
+if (!svg) set terminal pngcairo size page_x,page_y font 'DejaVu Sans,11' background '#ffffff'
 set encoding utf8
 set tics nomirror out scale 0.6 textcolor rgb '#303030'
 set grid lc rgb '#e4e4e4' lt 1 lw 0.6
@@ -112,9 +113,22 @@ equal = least > most / 20
 eval name_panel(equal ? 'Path' : 'Path; its axes have scales of their own', left_from, 0.920)
 eval key_below(0.920)
 if (solid) {
-	set view 62, 38, 1, 1
+	# The shorter side of the panel is the edge of a box along the longer of
+	# the first two axes, or of a cube.  It is chosen so that the whole box,
+	# as it is seen, fits beside the marks.
+	tilt = 62; turn = 38
+	set view tilt, turn, 1, 1
 	set xyplane 0
-	eval place_panel(0.100, 0.325, zoom_n > 0 ? 0.515 : 0.30, zoom_n > 0 ? 0.770 : 0.70)
+	array edge[3]
+	do for [k = 1:3] { edge[k] = equal ? span(view[k]) + 2 * room(view[k]) : 1.0 }
+	wide = edge[1] * cos(turn * pi / 180) + edge[2] * sin(turn * pi / 180)
+	deep = edge[1] * sin(turn * pi / 180) + edge[2] * cos(turn * pi / 180)
+	high = deep * cos(tilt * pi / 180) + edge[3] * sin(tilt * pi / 180)
+	from_y = bottom - 0.014; to_y = 0.839; from_x = 0.090; to_x = 0.335
+	pixels = larger(edge[1], edge[2]) / \
+		larger(wide / (to_x - from_x) / page_x, high / (to_y - from_y) / page_y)
+	eval place_panel((from_x + to_x - pixels / page_x) / 2, (from_x + to_x + pixels / page_x) / 2, \
+		(from_y + to_y - pixels / page_y) / 2, (from_y + to_y + pixels / page_y) / 2)
 	set zlabel rotate by 90 offset 0.2,0
 	set xlabel offset -1,-0.8; set ylabel offset 1,-0.8
 	set xtics offset 0,-0.3; set ytics offset 0,-0.3

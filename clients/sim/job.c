@@ -209,15 +209,16 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 		return EX_OSERR;
 	err = interp_compile(&text, &of.text, b, &job->lines, &diag);
 	job->compile_lines_s = job->lines / (clock_s(CLOCK_MONOTONIC) - from_s);
-	if (err == -EINVAL && o->check)
-		say_all(&all, &text, &of);
 	if (err == 0 && inside)
 		err = begin_inside(o, c, &from, b, &diag);
+	/* Records are read up to the first refusal, which nobody has told. */
+	if (err == -EINVAL && all.n == 0)
+		say_one(&all, &diag);
+	if (err == -EINVAL && o->check)
+		say_all(&all, &text, &of);
 	/* The text of a million lines is half as large as their program. */
 	free(t->at);
 	t->at = NULL;
-	if (err == -EINVAL && all.n == 0)
-		interp_diag_tell(&diag, o->job);
 	err = err == 0 ? lay_out(job, b, o->job) :
 	    err == -EINVAL ? EX_DATAERR : EX_OSERR;
 	interp_build_destroy(b);

@@ -2,6 +2,7 @@
 /* run.c - runs the cycle, as fast as the processor can or at a given speed */
 #include "sim.h"
 #include "clocks.h"
+#include "standard.h"
 #include "trials.h"
 
 #include <signal.h>
@@ -99,7 +100,8 @@ static void progress(const struct sim_run *r, bool last)
 
 	if (r->o->quiet || !isatty(STDERR_FILENO))
 		return;
-	fprintf(stderr, "\r%3.0f %%  %10.1f s  %-8s %s", share * 100,
+	standard_control(stderr, "\r");
+	fprintf(stderr, "%3.0f %%  %10.1f s  %-8s %s", share * 100,
 		virtual_s(&r->cycle), state_duty[r->cycle.state].name,
 		last ? "\n" : "");
 }

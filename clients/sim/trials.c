@@ -2,6 +2,7 @@
 /* trials.c - shows how far a search has come */
 #include "trials.h"
 #include "clocks.h"
+#include "standard.h"
 
 #include <stdio.h>
 #include <time.h>
@@ -20,9 +21,10 @@ void trials_tell(const struct trials *t, unsigned int used, const char *best)
 
 	if (t->quiet || (!t->terminal && used % 20 != 0))
 		return;
-	fprintf(stderr, "%s%4u of %u trials, best %s; %.0f s left%s",
-		t->terminal ? "\r" : "", used, t->budget, best, left_s,
-		t->terminal ? "   " : "\n");
+	if (t->terminal)
+		standard_control(stderr, "\r");
+	fprintf(stderr, "%4u of %u trials, best %s; %.0f s left%s", used,
+		t->budget, best, left_s, t->terminal ? "   " : "\n");
 }
 
 void trials_end(const struct trials *t)

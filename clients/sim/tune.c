@@ -234,11 +234,10 @@ static int check_method(const struct tuning *t)
 	const uint32_t methods = t->config.methods;
 	char found[100];
 
-	if ((methods & tuned) && !(methods & INTERP_COMPENSATE_TWIN))
+	if (methods & tuned)
 		return 0;
 	snprintf(found, sizeof(found), "[contour] method = %.40s has no gains "
-		 "to find%s", t->run->config->contour.method,
-		 methods & INTERP_COMPENSATE_TWIN ? " in its twin" : "");
+		 "to find", t->run->config->contour.method);
 	return refuse(found, "feedforward, cross-coupled or predictive, "
 		      "joined by +; zpetc beside the last two");
 }

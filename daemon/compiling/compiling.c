@@ -26,6 +26,34 @@ static struct interp_build_options build_of(const struct machine_config *c)
 	return b;
 }
 
+static int takes(const void *arg, const struct interp_tech *t, const char *who,
+		 struct interp_diag *why)
+{
+	return config_generator_takes(arg, t, who, why);
+}
+
+static bool reaches(const struct machine_config *c, int field)
+{
+	struct process_delivers d;
+
+	config_delivers(c, field, &d);
+	return d.there || d.by_hand;
+}
+
+static struct interp_delivery delivery_of(const struct machine_config *c)
+{
+	struct interp_delivery d = { .takes = takes, .arg = c };
+
+	if (!reaches(c, PROCESS_PUMP) && !config_has_plc(c))
+		d.no_pump = "[generator] or [gpio] pump = a line; a PLC; or "
+			    "[generator] by_hand = pump, and a person does it";
+	if (!reaches(c, PROCESS_SENSE) && c->probe_with == 0)
+		d.no_sense = "[generator] sense = how it is reached; or "
+			     "[probe] with = spark-off-voltage, if that is "
+			     "what feels contact";
+	return d;
+}
+
 void config_compiling(const struct machine_config *c,
 		      const struct config_tech *tech,
 		      struct config_compiling *ret)
@@ -50,6 +78,9 @@ void config_compiling(const struct machine_config *c,
 	memcpy(o->nc.work_offset_mm, c->work_offset_mm,
 	       sizeof(o->nc.work_offset_mm));
 	memcpy(o->nc.offset_mm, c->offset_mm, sizeof(o->nc.offset_mm));
+	ret->delivery = delivery_of(c);
+	if (config_generator_limits(c))
+		o->nc.delivery = &ret->delivery;
 	if (config_kinematics(c, &ret->kinematics, &none) == 0)
 		o->nc.kinematics = &ret->kinematics;
 }

@@ -99,6 +99,7 @@ struct config_compiling {
 	struct interp_mcode mcodes[INTERP_NMCODES];
 	struct interp_tech tech;
 	struct interp_kinematics kinematics;
+	struct interp_delivery delivery;
 };
 
 /**

@@ -56,6 +56,23 @@ static bool is_enc(const char *path)
 	return n >= 4 && strcasecmp(path + n - 4, ".enc") == 0;
 }
 
+/* What would not reach the generator. */
+static int check_delivery(struct config_tech *t, const struct machine_config *c)
+{
+	char name[16];
+
+	for (uint32_t i = 0; i < t->table->nrows; i++) {
+		const struct interp_tech_row *r = &t->table->row[i];
+
+		interp_tech_name(r->letter, r->number, name, sizeof(name));
+		t->diag.line = r->line;
+		t->diag.column = 1;
+		if (config_generator_takes(c, &r->tech, name, &t->diag) < 0)
+			return -EINVAL;
+	}
+	return 0;
+}
+
 /* The same checks as those of [jump] in check.c. */
 static int check_jumps(struct config_tech *t, const struct machine_config *c)
 {
@@ -98,6 +115,8 @@ int config_tech_load(struct config_tech *ret, const struct machine_config *c,
 		return err;
 	config_tech_base(c, &base);
 	err = interp_tech_table_fits(ret->table, &base, &ret->diag);
+	if (err == 0)
+		err = check_delivery(ret, c);
 	return err ? err : check_jumps(ret, c);
 }
 

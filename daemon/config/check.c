@@ -170,8 +170,8 @@ static int check_compensation(struct check *q)
 	blame(q, k, k, 0);
 	return interp_diag_say(q->diag, "contour.method %.40s; none, or of "
 			       "feedforward, cross-coupled, predictive, "
-			       "zpetc, twin joined by +, feedforward and "
-			       "zpetc not together", q->c->contour.method);
+			       "zpetc joined by +, feedforward and zpetc not "
+			       "together", q->c->contour.method);
 }
 
 double config_longest_mm(const struct machine_config *c, int *ret_axis)
@@ -280,6 +280,7 @@ int config_check(const struct machine_config *c,
 		return -EINVAL;
 	return check_period(&q) || check_present(&q) || check_lines(&q) ||
 	       check_guides(&q) ||
+	       config_check_generator(c, lines, diag) ||
 	       config_check_plc(c, lines, diag) ||
 	       config_check_sim(c, lines, diag) ||
 	       check_orders_if_set(&q) || check_jump(&q, "height_mm") ||

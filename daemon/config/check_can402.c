@@ -142,19 +142,20 @@ static int check_following(struct check *q)
 }
 
 /* The identifiers of CiA 301 belong to NMT, SYNC and the drives. */
-static int check_id(struct check *q, const char *key, double id, double other)
+static int check_gap_id(struct check *q)
 {
+	const double id = q->c->can402.gap_id;
 	const uint32_t node = (uint32_t)id & 0x7f;
-	bool taken = id < 0x180 || id >= 0x580 || id == other;
+	bool taken = id < 0x180 || id >= 0x580;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		taken = taken || (node_of(q, i) > 0 && node_of(q, i) == node);
 	if (id == 0 || !taken)
 		return 0;
-	interp_diag_say(q->diag, "can402.%s %.0f, which is in use; one from "
-			"384 to 1407 whose rest by 128 is no drive's node", key,
-			id);
-	return refuse(q, SECTION_CAN402, key, 0);
+	interp_diag_say(q->diag, "can402.gap_id %.0f, which is in use; one "
+			"from 384 to 1407 whose rest by 128 is no drive's "
+			"node", id);
+	return refuse(q, SECTION_CAN402, "gap_id", 0);
 }
 
 int config_check_can402(const struct machine_config *c,
@@ -162,7 +163,6 @@ int config_check_can402(const struct machine_config *c,
 			struct interp_diag *diag)
 {
 	struct check q = { c, lines, diag };
-	const struct config_can402 *k = &c->can402;
 	bool any = false;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
@@ -172,8 +172,7 @@ int config_check_can402(const struct machine_config *c,
 		any = any || node_of(&q, i) > 0;
 	}
 	if (config_check_brakes(c, lines, diag) || check_following(&q) ||
-	    check_id(&q, "gap_id", k->gap_id, k->generator_id) ||
-	    check_id(&q, "generator_id", k->generator_id, k->gap_id))
+	    check_gap_id(&q))
 		return -EINVAL;
 	if (any)
 		return 0;

@@ -118,6 +118,23 @@ static void generator_of(const struct machine_config *m,
 	g->off_us = or_own(g->off_us, sim ? m->sim.off_us : 0);
 }
 
+static void asking_of(const struct machine_config *m, struct cycle_config *c)
+{
+	const struct config_generator *g = &m->generator;
+	struct asking_config *a = &c->asking;
+
+	a->limited = config_generator_limits(m);
+	a->settle_cycles = cycles_of(g->settle_ms * 1e-3, c->period_ns);
+	a->polarity_cycles = cycles_of(g->polarity_ms * 1e-3, c->period_ns);
+	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+		struct config_way told;
+
+		config_delivers(m, i, &a->field[i]);
+		config_way(m, i, true, &told);
+		a->answers = a->answers || told.kind != WAY_NONE;
+	}
+}
+
 static void manual_of(const struct machine_config *c, int axis,
 		      struct manual_axis *ret)
 {
@@ -156,6 +173,16 @@ static void comp_of(const struct machine_config *c, struct comp_config *ret)
 	ret->mapped = !interp_errormap_is_empty(&c->geometry);
 }
 
+static void resync_of(const struct machine_config *c, struct resync_config *ret)
+{
+	const bool drives = config_machine_is(c, MACHINE_DRIVES);
+	const double max_mm = drives ? c->can402.resync_mm : c->gpio.resync_mm;
+
+	ret->v_mm_s = drives ? c->can402.resync_mm_s : c->gpio.resync_mm_s;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret->max[i] = (int32_t)(max_mm / c->axes.axis[i].pulse_mm);
+}
+
 void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 {
 	*ret = (struct cycle_config) {
@@ -178,6 +205,7 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 	interp_machine_travel(&c->axes, &ret->travel_a_mm_s2,
 			      &ret->travel_j_mm_s3);
 	generator_of(c, &ret->gap);
+	asking_of(c, ret);
 
 	/* Round inward: to the last pulse inside the limit, never to the first
 	 * outside. */
@@ -192,5 +220,6 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 		manual_of(c, i, &ret->axis[i]);
 	}
 	comp_of(c, &ret->comp);
+	resync_of(c, &ret->resync);
 	config_contouring(c, &ret->contouring);
 }

@@ -13,6 +13,7 @@
 #define CONFIG_H
 
 #include "backends.h"
+#include "process.h"
 #include "settings.h"
 
 #include "interp/axis.h"
@@ -25,6 +26,8 @@
 
 #include <stdbool.h>
 #include <stdio.h>
+
+#define CONFIG_WAY_MAX		128	/* of a way's text, with its NUL */
 
 /* [axis.*] backlash_* */
 struct config_backlash {
@@ -47,7 +50,7 @@ struct config_can402 {
 	double resync_mm, resync_mm_s;	/* back to its place when enabled */
 	double enable_s;		/* longest time from a start to
 					 * motion */
-	double gap_id, generator_id;	/* identifier of its frames; 0: none */
+	double gap_id;			/* identifier of its frames; 0: none */
 };
 
 /* [plc]; docs/plc.md. */
@@ -60,6 +63,28 @@ struct config_plc {
 	char m_before[96], m_after[96], m_free[96];	/* lists of M codes */
 	char m_redo[96], m_stop[96];
 	double m_timeout_s;		/* 0: never */
+};
+
+/* [generator] interface. */
+enum config_interface {
+	GENERATOR_AUTO,			/* the simulated one with backend sim,
+					 * else none */
+	GENERATOR_SIM, GENERATOR_NONE, GENERATOR_LINES, GENERATOR_CAN,
+	GENERATOR_NINTERFACES
+};
+
+/* [generator]; docs/generator.md. */
+struct config_generator {
+	int interface;			/* enum config_interface */
+	char can_interface[16];
+	double can_id;			/* of the frame that is sent if no field
+					 * has a place of its own; 0: none */
+	char field[PROCESS_NFIELDS][CONFIG_WAY_MAX];	/* as
+					 * config_way_read() */
+	char told[INTERP_NGENERATOR][CONFIG_WAY_MAX];
+	char by_hand[96];		/* names of fields; "none" */
+	double settle_ms, polarity_ms;
+	double silent_ms, confirm_s;
 };
 
 /* [axis.*] brake: who holds the axis while its drive is off. */
@@ -211,6 +236,7 @@ struct config_gpio {
 	int pull;			/* of inputs: 0 as is, 1 up, 2 down, 3
 					 * no */
 	double high_cycles, low_cycles;	/* of a step */
+	double high_us, low_us, setup_us;	/* at the least */
 	double dir_setup_cycles, dir_hold_cycles;
 	char adc[64], adc_trigger[64];	/* of industrial I/O; "none" */
 	double adc_channel, adc_ratio;	/* V at the gap for a V at the input */
@@ -292,12 +318,15 @@ struct machine_config {
 	struct config_kinematics kinematics;
 	struct config_can402 can402;
 	struct config_plc plc;
+	struct config_generator generator;
 	struct config_drive drive[INTERP_NAXES];
 	struct cycle_gap_config gap;
 	struct cycle_jump_config jump;
 	int jump_escape;		/* enum interp_escape_mode */
 	struct config_contour contour;
 	struct probe_config probe;
+	int probe_with;			/* 0: the sensing voltage; 1: what is on
+					 * the gap while the sparks are off */
 	double corner_um;		/* [speed] corner_um */
 	double tolerance_um, rotary_radius_mm;	/* [speed], of its ends */
 	int nodes;			/* [speed] nodes: 0 pass, 1 stop */
@@ -374,6 +403,64 @@ struct config_encoder_at {
  */
 const char *config_encoder_read(const char *text,
 				struct config_encoder_at *ret);
+
+#define CONFIG_WAY_LINES	6	/* for one field */
+
+enum config_way_kind {
+	WAY_NONE,
+	WAY_OWN,			/* the machine's backend does it */
+	WAY_CAN,
+	WAY_LINES,
+};
+
+/* How one field reaches the generator, or is told by it. */
+struct config_way {
+	enum config_way_kind kind;
+	struct process_delivers gives;
+	/* CAN: in the frames with this identifier. */
+	uint16_t id;
+	uint8_t bit, bits;		/* first bit of 64, and how many */
+	double scale;			/* of one count */
+	/* Lines: the first is the lowest bit; value i of `values` is that of
+	 * the code i. */
+	uint8_t nlines, ncodes;
+	struct config_line_at line[CONFIG_WAY_LINES];
+	double code[PROCESS_VALUES_MAX];
+};
+
+/**
+ * config_way() - how field @field of enum process_id reaches the generator; its
+ * text must be one that was checked.  @told: how the generator tells it.
+ */
+void config_way(const struct machine_config *c, int field, bool told,
+		struct config_way *ret);
+
+/** config_delivers() - what of field @field reaches the generator. */
+void config_delivers(const struct machine_config *c, int field,
+		     struct process_delivers *ret);
+
+/**
+ * config_generator_limits() - can a program ask for something that would be
+ * dropped?  Not where nothing sparks, nor of the simulated generator.
+ */
+bool config_generator_limits(const struct machine_config *c);
+
+/** config_generator_interface() - enum config_interface, never AUTO. */
+int config_generator_interface(const struct machine_config *c);
+
+/** config_generator_frames() - how many kinds of its frames are on the CAN
+ *  interface @name, from it and to it. */
+uint32_t config_generator_frames(const struct machine_config *c,
+				 const char *name);
+
+/**
+ * config_generator_takes() - can all that @t gives be delivered?
+ * Return: 0, or -EINVAL with found and wanted of @diag filled; @who is named in
+ * them.
+ */
+int config_generator_takes(const struct machine_config *c,
+			   const struct interp_tech *t, const char *who,
+			   struct interp_diag *diag);
 
 /** config_line_name() - its key: "step_X", "spark", ... */
 const char *config_line_name(int line);

@@ -35,7 +35,7 @@ static int check_methods(const struct machine_config *c, int methods,
 	interp_diag_say(diag, "contour.method %.40s asks for more than the "
 			      "cycle knows of what comes; none, feedforward, "
 			      "cross-coupled or feedforward+cross-coupled; "
-			      "predictive, zpetc and twin are for edmsim "
+			      "predictive and zpetc are for edmsim "
 			      "--tune-contour and --dry-run",
 			      c->contour.method);
 	return refuse(c, diag);

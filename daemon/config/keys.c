@@ -40,6 +40,9 @@ const struct config_section config_section[CONFIG_NSECTIONS] = {
 		"how fast the nodes of a program are passed" },
 	[SECTION_CAN402] = { "can402", NULL, 1,
 		"drives of CiA 402 on a CAN bus, for backend can402" },
+	[SECTION_GENERATOR] = { "generator", NULL, 1,
+		"how what a condition asks for reaches the generator; "
+		"docs/generator.md" },
 	[SECTION_PLC] = { "plc", NULL, 1,
 		"a PLC on a CAN bus, edmd is its CANopen slave; docs/plc.md" },
 	[SECTION_NC] = { "nc", NULL, 1,
@@ -70,6 +73,7 @@ static const struct config_keys *const part[] = {
 	&config_keys_geometry,
 	&config_keys_gap,
 	&config_keys_bus,
+	&config_keys_generator,
 	&config_keys_sim,
 	&config_keys_gpio,
 	&config_keys_panel,

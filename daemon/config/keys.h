@@ -30,6 +30,7 @@ enum config_section_id {
 	SECTION_PROBE,
 	SECTION_SPEED,
 	SECTION_CAN402,
+	SECTION_GENERATOR,
 	SECTION_PLC,
 	SECTION_NC,
 	SECTION_TECH,
@@ -174,6 +175,30 @@ int config_check_sim(const struct machine_config *c,
 int config_check_can402(const struct machine_config *c,
 			const struct config_lines *lines,
 			struct interp_diag *diag);
+
+/** config_check_generator() - the same for [generator]. */
+int config_check_generator(const struct machine_config *c,
+			   const struct config_lines *lines,
+			   struct interp_diag *diag);
+
+/**
+ * config_way_read() - the text of a way that is not "auto".
+ * Return: NULL, or what is wrong with it, as "has no byte".
+ */
+const char *config_way_read(const char *text, int field,
+			    struct config_way *ret);
+
+/** config_way_all() - all that the machine file and a table may say. */
+void config_way_all(int field, bool by_hand, struct process_delivers *ret);
+
+#define CONFIG_WAY_WORD	40
+
+/** config_hand_read() - the fields of by_hand, a bit each; @odd gets the first
+ *  word that is none, or "". */
+uint32_t config_hand_read(const char *text, char odd[CONFIG_WAY_WORD]);
+
+/** config_generator_gpio() - does [gpio] have a line for this field? */
+bool config_generator_gpio(const struct machine_config *c, int field);
 
 /** config_check_plc() - the same for [plc]. */
 int config_check_plc(const struct machine_config *c,

@@ -48,9 +48,6 @@ static const struct config_key row[] = {
 	WHOLE(CAN402, "gap_id", "", "0", 0, 2047, AT(can402.gap_id),
 	      "CAN identifier of the frames with the gap's signal; 0: "
 	       "there is no gap and no spark"),
-	WHOLE(CAN402, "generator_id", "", "0", 0, 2047, AT(can402.generator_id),
-	      "CAN identifier of the frames to the generator; 0: none are "
-	       "sent"),
 
 	NAME(PLC, "interface", "none", plc.interface,
 	     "network interface of the PLC's bus; none: there is no PLC"),

@@ -72,6 +72,13 @@ static const char *escape_word(int i)
 	       interp_escape_mode_name((enum interp_escape_mode)i);
 }
 
+static const char *probe_word(int i)
+{
+	static const char *const words[] = { "sense", "spark-off-voltage" };
+
+	return WORD_OF(words, i);
+}
+
 /* clang-format off */
 static const struct config_key row[] = {
 	WORDS(GAP, "source", "sim", AT(gap.source), source_word,
@@ -234,6 +241,9 @@ static const struct config_key row[] = {
 	       "speed until the second contact, which counts"),
 	NUMBER(PROBE, "back_mm", "mm", "0.1", 0, 10, AT(probe.back_mm),
 	       "way back between the two contacts; 0: the first one counts"),
+	WORDS(PROBE, "with", "sense", AT(probe_with), probe_word,
+	      "what feels contact: the generator's sensing voltage, or the "
+	      "voltage that is on the gap while the sparks are off"),
 	PERIODS(PROBE, "settle_s", "s", "0.05", 0.002, 10, probe.settle,
 	       "time for the sensing voltage to settle, before the motion "
 	       "begins"),

@@ -56,6 +56,13 @@ static const struct config_key row[] = {
 	WHOLE(GPIO, "dir_hold_cycles", "periods", "1", 1, 1000,
 	      AT(gpio.dir_hold_cycles),
 	      "time from the end of a step to a change of direction"),
+	NUMBER(GPIO, "high_us", "us", "5", 0, 1e5, AT(gpio.high_us),
+	       "a step stays on for at least this time, however late the "
+	       "cycle wakes; in quadrature, between two edges"),
+	NUMBER(GPIO, "low_us", "us", "5", 0, 1e5, AT(gpio.low_us),
+	       "... and off"),
+	NUMBER(GPIO, "setup_us", "us", "5", 0, 1e5, AT(gpio.setup_us),
+	       "... and this long after a change of direction it begins"),
 	STRING(GPIO, "adc", "none", gpio.adc,
 	       "converter of the gap's voltage: iio:deviceN or its name; for "
 	       "[gap] source = voltage"),
@@ -93,10 +100,10 @@ static const struct config_key row[] = {
 	NUMBER(GPIO, "following_s", "s", "0", 0, 10, AT(gpio.following_s),
 	       "added to following_mm: this time multiplied by the speed"),
 	NUMBER(GPIO, "resync_mm", "mm", "0.2", 0, 100, AT(gpio.resync_mm),
-	       "after such a fault, an axis that is nearer than this is "
-	       "brought back to its place; one that is farther has lost it"),
+	       "an axis that was pushed off the path goes back by itself if "
+	       "it is nearer than this; docs/gpio.md"),
 	NUMBER(GPIO, "resync_mm_s", "mm/s", "0.5", 0.001, 100,
-	       AT(gpio.resync_mm_s), "speed back to that place"),
+	       AT(gpio.resync_mm_s), "speed back to the path"),
 	LINE("enable", LINE_ENABLE,
 	     "output: power on the axes' drives"),
 	NUMBER(GPIO, "brake_ms", "ms", "100", 0, 5000, AT(gpio.brake_ms),

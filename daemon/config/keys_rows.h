@@ -68,6 +68,7 @@ extern const struct config_keys config_keys_axis;
 extern const struct config_keys config_keys_geometry;
 extern const struct config_keys config_keys_gap;
 extern const struct config_keys config_keys_bus;
+extern const struct config_keys config_keys_generator;
 extern const struct config_keys config_keys_sim;
 extern const struct config_keys config_keys_gpio;
 extern const struct config_keys config_keys_panel;

@@ -109,9 +109,12 @@ static const char orders[] =
 	"  faster than the lines pulse; an encoder's lines are of one chip and\n"
 	"  nobody else's.\n"
 	"- [can402], with backend can402: nodes are different, also from\n"
-	"  `master_node`, and of axes that are present; `gap_id` and\n"
-	"  `generator_id` are nobody else's; an axis travels within 2147483647\n"
-	"  increments of its drive from 0.\n";
+	"  `master_node`, and of axes that are present; `gap_id` is\n"
+	"  nobody else's; an axis travels within 2147483647\n"
+	"  increments of its drive from 0.\n"
+	"- [generator]: each line, and each bit of a frame, belongs to one field;\n"
+	"  `spark` by a line needs a watchdog and an e-stop, as [gpio] `spark`\n"
+	"  does.\n";
 
 void config_document(FILE *f)
 {

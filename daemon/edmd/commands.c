@@ -147,14 +147,35 @@ static bool is_sign(const struct shm_command *c)
 	return c->verb == SHM_DO_JOG_ON;
 }
 
+static bool is_ending(const struct shm_command *c)
+{
+	return c->verb == SHM_DO_HOLD || c->verb == SHM_DO_STOP ||
+	       c->verb == SHM_DO_ESTOP;
+}
+
+/*
+ * An act that ends motion comes by two ways, and the slower copy may find that
+ * a start went between: then it ends the motion once more.  Otherwise it is
+ * done already.
+ */
+static void end_again(struct loop *l, const struct shm_command *c)
+{
+	if (is_ending(c) && is_for_us(l, c) && !loop_stands(l))
+		pass_on(l, c);
+}
+
 static void carry_out(struct loop *l, const struct shm_command *c)
 {
 	bool later = c->verb == SHM_LOAD || c->verb == SHM_UNLOAD;
 	enum cycle_answer answer = ANSWER_WRONG_STATE;
 
 	/* A command without an id cannot be answered. */
-	if (c->id == 0 || is_repeat(l, c))
+	if (c->id == 0)
 		return;
+	if (is_repeat(l, c)) {
+		end_again(l, c);
+		return;
+	}
 	if (!is_sign(c))
 		shm_done_begin(l->status, c->id);
 	if (is_late(c)) {
@@ -185,7 +206,8 @@ void loop_commands(struct loop *l)
 
 	unload_finish(l);
 	for (int i = 0; i < COMMANDS_A_PERIOD; i++) {
-		if (!shm_command_take(l->commands, &c))
+		if (!shm_stop_take(l->stops, &c) &&
+		    !shm_command_take(l->commands, &c))
 			return;
 		carry_out(l, &c);
 	}

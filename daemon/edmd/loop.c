@@ -4,9 +4,9 @@
  */
 #include "loop.h"
 #include "clocks.h"
+#include "thread.h"
 
 #include <errno.h>
-#include <signal.h>
 #include <time.h>
 
 /* Percentage of a period that the simulated periods may take. */
@@ -136,24 +136,6 @@ static void *run(void *arg)
 	return NULL;
 }
 
-/* No signal is delivered to the cycle. */
-static int thread_start(struct loop *l)
-{
-	pthread_attr_t attr;
-	sigset_t all, before;
-	int err;
-
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	pthread_attr_init(&attr);
-	err = pthread_attr_setstacksize(&attr, SETUP_STACK_BYTES);
-	if (err == 0)
-		err = pthread_create(&l->thread, &attr, run, l);
-	pthread_attr_destroy(&attr);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	return -err;
-}
-
 int loop_start(struct loop *l, struct setup_report *report)
 {
 	int err;
@@ -164,7 +146,10 @@ int loop_start(struct loop *l, struct setup_report *report)
 		.outcome = l->cycle.outcome,
 	};
 	sem_init(&l->ready, 0, 0);
-	err = thread_start(l);
+	err = thread_start(&l->thread, &(struct thread) {
+		.name = "edmd-cycle", .run = run, .arg = l,
+		.stack_bytes = SETUP_STACK_BYTES,
+	});
 	while (err == 0 && sem_wait(&l->ready) < 0 && errno == EINTR)
 		;
 	sem_destroy(&l->ready);

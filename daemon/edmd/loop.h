@@ -25,6 +25,7 @@ struct loop_told {
 	uint32_t program, number;	/* the condition called last, and in */
 	char letter;			/* which program; 0: none */
 	uint32_t hunts;			/* of the totals */
+	uint32_t hand;			/* fields that a person is to set */
 };
 
 struct loop_timing {
@@ -40,6 +41,7 @@ struct loop {
 	struct setup_wanted wanted;
 	struct shm_status *status;
 	struct shm_commands *commands;
+	struct shm_stops *stops;	/* NULL: no way of their own */
 	struct program *program;	/* loaded; or NULL */
 	double pulse_mm[SHM_NAXES];
 	uint64_t axes_key, home_key;	/* key.h */

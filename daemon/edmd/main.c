@@ -2,6 +2,7 @@
 /*
  * main.c - edmd: start, run, end in the reverse order
  */
+#include "generator.h"
 #include "key.h"
 #include "logger.h"
 #include "log.h"
@@ -45,10 +46,15 @@ static int machine_open(struct loop *l, const struct machine_config *c)
 	static io_open_fn *const open[] = { CONFIG_BACKENDS(BACKEND_OPEN) };
 	struct interp_diag diag = { .found = "the machine cannot be opened",
 				    .wanted = "more free memory" };
-	const int err = open[c->backend](&l->io, c, &diag);
+	int err = open[c->backend](&l->io, c, &diag);
 
 	if (err < 0)
 		return machine_refuse(err, &diag);
+	err = io_generator_open(&l->io, c, &diag);
+	if (err < 0) {
+		l->io.close(l->io.self);
+		return machine_refuse(err, &diag);
+	}
 	if (l->io.edges_per_cycle)
 		l->cycle.config.points_max = l->io.edges_per_cycle;
 	return EX_OK;
@@ -120,9 +126,16 @@ static int commands_open(struct loop *l, const char *name)
 	int err = shm_command_create(&l->commands, name,
 				     l->status->head.instance);
 
-	if (err < 0)
+	if (err < 0) {
 		log_line(LOG_ERROR, "edmd: the socket for commands: %s",
 			 strerror(-err));
+		return err;
+	}
+	err = shm_stop_create(&l->stops, name, l->status);
+	if (err < 0)
+		log_line(LOG_ERROR, "edmd: the socket for acts that end "
+			 "motion: %s; a folder that edmd may write, /run/edmd, "
+			 "or none", strerror(-err));
 	return err;
 }
 
@@ -132,12 +145,15 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 	struct setup_report setup = { .item = { { .what = NULL } } };
 	int code;
 
-	if (commands_open(l, c->name) < 0)
+	if (commands_open(l, c->name) < 0) {
+		shm_command_destroy(l->commands);
 		return EX_CANTCREAT;
+	}
 	setup_process(&setup);
 	resume(l, c, before);
 	code = run(l, c, &setup);
 	program_close(l->program);
+	shm_stop_destroy(l->stops);
 	shm_command_destroy(l->commands);
 	return code;
 }

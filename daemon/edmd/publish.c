@@ -43,7 +43,8 @@ SAME(SHM_ELSEWHERE, ANSWER_ELSEWHERE);
 SAME(SHM_NOT_UP, ANSWER_NOT_UP);
 SAME(SHM_LOCKED, ANSWER_LOCKED);
 SAME(SHM_STILL_THERE, ANSWER_STILL_THERE);
-SAME(SHM_STILL_THERE + 1, CYCLE_NANSWERS);
+SAME(SHM_NO_POWER, ANSWER_NO_POWER);
+SAME(SHM_NO_POWER + 1, CYCLE_NANSWERS);
 SAME(SHM_OUTCOME_NONE, OUTCOME_NONE);
 SAME(SHM_OUTCOME_DONE, OUTCOME_DONE);
 SAME(SHM_OUTCOME_FAULT, OUTCOME_FAULT);
@@ -193,6 +194,7 @@ void loop_notice(struct loop *l)
 	l->told.state = c->state;
 	l->told.outcome = c->outcome;
 	l->told.hunts = c->totals.hunts;
+	l->told.hand = c->asking.stands;
 	notice_faults(l);
 	if (c->state != was.state)
 		loop_event(l, SHM_EV_STATE, 0, (int32_t)c->state);
@@ -202,6 +204,8 @@ void loop_notice(struct loop *l)
 	}
 	if (c->totals.hunts > was.hunts && is_power_of_ten(c->totals.hunts))
 		loop_event(l, SHM_EV_HUNTING, 0, (int32_t)c->retract.in_row);
+	if (c->asking.stands && !was.hand)
+		loop_event(l, SHM_EV_HAND, c->asking.stands, 0);
 	notice_condition(l);
 }
 
@@ -239,6 +243,8 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 
 	axis_state_get(&l->cycle, &at);
 	memcpy(s->drive, at.drive, sizeof(s->drive));
+	memcpy(s->off, at.off, sizeof(s->off));
+	s->sure_mm = l->cycle.resync.sure_mm;
 	memcpy(s->home_shift, at.shift, sizeof(s->home_shift));
 	memcpy(s->toward, at.toward, sizeof(s->toward));
 	memcpy(s->limit_side, at.limit.side, sizeof(s->limit_side));

@@ -6,6 +6,7 @@
 #include "clocks.h"
 #include "cycle.h"
 #include "hunting.h"
+#include "process.h"
 #include "log.h"
 
 #include <systemd/sd-daemon.h>
@@ -100,6 +101,8 @@ static const char *answer_text(int32_t code)
 
 static void tell(struct report *r, const struct shm_event *e)
 {
+	char names[96];
+
 	switch (e->kind) {
 	case SHM_EV_STATE:
 		tell_state(r, e);
@@ -119,6 +122,10 @@ static void tell(struct report *r, const struct shm_event *e)
 	case SHM_EV_HUNTING:
 		log_line(LOG_WARNING, "cycle: " HUNTING_WHAT " at %.3f mm; "
 			 HUNTING_ADVICE, e->code, e->place_mm);
+		break;
+	case SHM_EV_HAND:
+		log_line(LOG_WARNING, "cycle: " PROCESS_HAND,
+			 process_names(e->id, names, sizeof(names)));
 		break;
 	case SHM_EV_ANSWER:
 		if (e->code != ANSWER_DONE)

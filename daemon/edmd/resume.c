@@ -93,6 +93,7 @@ static void axes_restore(struct loop *l, const struct shm_snapshot *s)
 
 	memcpy(at.place, s->pos, sizeof(at.place));
 	memcpy(at.drive, s->drive, sizeof(at.drive));
+	memcpy(at.off, s->off, sizeof(at.off));
 	memcpy(at.shift, s->home_shift, sizeof(at.shift));
 	memcpy(at.toward, s->toward, sizeof(at.toward));
 	memcpy(at.limit.side, s->limit_side, sizeof(at.limit.side));
@@ -124,7 +125,7 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 {
 	struct cycle_past past = {
 		.far_mm = isfinite(s->far_mm) ? s->far_mm : s->place_mm,
-		.back_mm = s->back_mm,
+		.back_mm = s->back_mm, .sure_mm = s->sure_mm,
 		.found_once = s->found_once, .found_twice = s->found_twice,
 		.pump = s->pump, .mcode = s->mcode, .mcode_at = s->mcode_at,
 		.totals = {

@@ -156,10 +156,9 @@ static void drain(struct can402 *s)
 			hear(s, &m);
 		else if (got == CAN_ODD)
 			can402_count(s, NOTE_MALFORMED, ++s->malformed);
-		else if (got == CAN_WARNING)
-			can402_count(s, NOTE_BUS_WARNING, ++s->bus_warnings);
-		else if (got == CAN_PASSIVE)
-			can402_count(s, NOTE_BUS_PASSIVE, ++s->bus_passives);
+		else if (got >= CAN_WARNING && got <= CAN_TX_OVERFLOW)
+			can402_count(s, NOTE_BUS_WARNING + got - CAN_WARNING,
+				     ++s->states[got - CAN_WARNING]);
 		else if (got != CAN_RESTARTED)
 			bus_is(s, got);
 		if (got == CAN_DOWN)
@@ -178,13 +177,19 @@ static bool all_up(const struct can402 *s)
 	return true;
 }
 
-static bool all_arrived(const struct can402 *s)
+/* From now on all go where the cycle says; it was told where they begin. */
+static bool all_join(struct can402 *s)
 {
 	for (uint32_t i = 0; i < s->n; i++) {
-		if (s->drive[i].state != DRIVE_ENABLED || !s->drive[i].arrived)
+		if (s->drive[i].state != DRIVE_ENABLED || !s->drive[i].led ||
+		    s->drive[i].goal != DRIVE_GO_ON)
 			return false;
 	}
-	return !can402_brake_opens(s);
+	if (can402_brake_opens(s))
+		return false;
+	for (uint32_t i = 0; i < s->n; i++)
+		s->drive[i].joined = true;
+	return true;
 }
 
 static enum io_trouble trouble(const struct can402 *s)
@@ -209,7 +214,7 @@ static bool steers(const struct can402 *s)
 	bool any = false;
 
 	for (uint32_t i = 0; i < s->n; i++)
-		any = any || (s->drive[i].led && s->drive[i].arrived &&
+		any = any || (s->drive[i].led && s->drive[i].joined &&
 			      s->drive[i].trouble == DRIVE_WELL);
 	return any && !s->stopped;
 }
@@ -230,6 +235,14 @@ static void place(struct can402 *s)
 			drive_set_zero(d, s->out.target[s->axis[i]]);
 	}
 	s->placed = true;
+}
+
+static bool any_lacks(const struct can402 *s)
+{
+	for (uint32_t i = 0; i < s->n; i++)
+		if (drive_lacks_power(&s->drive[i]))
+			return true;
+	return false;
 }
 
 static uint32_t lost_places(const struct can402 *s)
@@ -280,14 +293,22 @@ static void fill(struct can402 *s, struct io_inputs *in, uint32_t unplaced)
 		.shares = s->shares,
 		.trouble = trouble(s),
 		.starting = !all_up(s),
-		.axes_off = !all_arrived(s), .steers = steers(s),
+		.powerless = any_lacks(s),
+		.axes_off = !all_join(s), .steers = steers(s),
 		.unplaced = unplaced,
 		.lost = s->brakes_lost,
 	};
 	in->shares_valid = in->gap_valid && s->has_shares;
 	memcpy(in->actual, s->out.target, sizeof(in->actual));
-	for (uint32_t i = 0; i < s->n; i++)
-		in->actual[s->axis[i]] = drive_place(&s->drive[i]);
+	memcpy(in->stands_at, s->out.target, sizeof(in->stands_at));
+	for (uint32_t i = 0; i < s->n; i++) {
+		const struct drive *d = &s->drive[i];
+
+		in->actual[s->axis[i]] = drive_place(d);
+		in->ran_on[s->axis[i]] = s->stop[i].coast;
+		if (d->stands && s->placed && !d->lost)
+			in->stands_at[s->axis[i]] = drive_stands_at(d);
+	}
 }
 
 static const struct can_msg sync_frame = { .id = CAN_SYNC };
@@ -322,39 +343,6 @@ static void reset(struct can402 *s)
 	}
 }
 
-/* An axis that was moved far by hand is not driven back. */
-static void watch_place(struct can402 *s, uint32_t i, int32_t target)
-{
-	struct drive *d = &s->drive[i];
-	const int64_t off = llabs((int64_t)drive_place(d) - target);
-
-	if (!d->arrived && d->stands && s->placed && !d->lost &&
-	    off > (int64_t)s->resync_max[s->axis[i]] + s->stop[i].coast &&
-	    d->trouble == DRIVE_WELL)
-		d->trouble = DRIVE_FOLLOWING;
-}
-
-static uint32_t tenths(double x)
-{
-	return x >= 0 && x < 6553.4 ? (uint32_t)(x * 10 + 0.5) : 0xffff;
-}
-
-static void tell_generator(struct can402 *s, bool safe)
-{
-	const struct io_outputs *o = &s->out;
-	struct can_msg m = { .id = (uint16_t)s->c.generator_id, .len = 8 };
-
-	if (s->c.generator_id == 0)
-		return;
-	m.data[0] = (uint8_t)((o->power && safe) | (o->pump && safe) << 1 |
-			      io_is_negative(o) << 2);
-	m.data[1] = s->count++;
-	can_put(m.data + 2, tenths(o->pulse[INTERP_TECH_PEAK_A]), 2);
-	can_put(m.data + 4, tenths(o->pulse[INTERP_TECH_ON_US]), 2);
-	can_put(m.data + 6, tenths(o->pulse[INTERP_TECH_OFF_US]), 2);
-	send(s, &m);
-}
-
 static void tell_drive(struct can402 *s, uint32_t i, enum drive_goal goal)
 {
 	const bool braking = s->stopping > 0 ||
@@ -364,8 +352,6 @@ static void tell_drive(struct can402 *s, uint32_t i, enum drive_goal goal)
 	struct can_msg m[DRIVE_EMITS];
 	size_t n;
 
-	if (s->out.enable && !braking)
-		watch_place(s, i, target);
 	drive_aim(&s->drive[i], goal);
 	n = drive_emit(&s->drive[i], target, m);
 	for (size_t j = 0; j < n; j++)
@@ -375,19 +361,13 @@ static void tell_drive(struct can402 *s, uint32_t i, enum drive_goal goal)
 void can402_write(void *self, const struct io_outputs *out)
 {
 	struct can402 *s = self;
-	const bool other = out->path != s->out.path;
 	bool on;
 
-	can402_stop_follow(s, out);
 	s->out = *out;
 	if (out->reset)
 		reset(s);
-	tell_generator(s, trouble(s) == IO_WELL);
-	for (uint32_t i = 0; i < s->n && other; i++)
-		drive_depart(&s->drive[i]);
 	on = can402_stop_step(s, out->enable && !s->stopped);
 	on = can402_brake_step(s, on);
-	can402_stop_pace(s);
 	for (uint32_t i = 0; i < s->n; i++)
 		tell_drive(s, i, on ? DRIVE_GO_ON : DRIVE_GO_STOP);
 }
@@ -398,7 +378,6 @@ static void leave(struct can402 *s)
 	struct can_msg m[DRIVE_ENDS];
 
 	s->out.enable = s->were_on = false;
-	s->out.power = s->out.pump = false;
 	s->stopping = 0;
 	can402_write(s, &s->out);
 	send(s, &sync_frame);

@@ -6,12 +6,9 @@
  * since the last SYNC, the cycle runs, and each drive is sent its target.  A
  * drive takes this target at the next SYNC and reaches it at the one after.
  *
- * Two more frames may be on the bus.
- * - Gap: two bytes are the voltage in 0.01 V.  If there are six bytes, the
- *   other four are the shares of open, spark, arc and short pulses in 1/255.
- * - Generator: a byte of flags (1 power, 2 pump, 4 negative); a byte that
- *   counts; then peak current in 0.1 A, on time and off time in 0.1 us, two
- *   bytes each.  0xffff leaves the generator its own setting.
+ * The gap's frames may be on the bus too: two bytes are the voltage in 0.01 V.
+ * If there are six bytes, the other four are the shares of open, spark, arc and
+ * short pulses in 1/255.
  *
  * Threads: can402_load() and can402_period_us() may be called by any thread;
  * for the rest see io.h.
@@ -29,7 +26,8 @@ struct can402_bus {
 	uint32_t bitrate;		/* bit/s */
 	uint32_t axes;
 	uint32_t heartbeat_ms;
-	bool gap, generator;		/* their frames are on it too */
+	bool gap;			/* its frames are on it too */
+	uint32_t generator;		/* frames to it and from it */
 	double plc_us;			/* a PLC on this bus: time between two
 					 * sets of frames; 0: there is none */
 };

@@ -22,7 +22,9 @@ enum can402_note_kind {
 	NOTE_TROUBLE, NOTE_ABORT, NOTE_PASSED, NOTE_EMERGENCY, NOTE_UP,
 	NOTE_SILENT, NOTE_LOST, NOTE_WARNING, NOTE_UNMAPPED, NOTE_BUS_OFF,
 	NOTE_DOWN, NOTE_BACK, NOTE_FULL, NOTE_FOREIGN, NOTE_MALFORMED,
-	NOTE_BUS_WARNING, NOTE_BUS_PASSIVE
+	/* In the order of enum can_got: */
+	NOTE_BUS_WARNING, NOTE_BUS_PASSIVE, NOTE_BUS_ACTIVE, NOTE_RX_OVERFLOW,
+	NOTE_TX_OVERFLOW, NOTE_END
 };
 
 struct can402_note {
@@ -40,14 +42,14 @@ struct can402_told {
 	uint32_t emergencies, unanswered, aborts, warnings;
 };
 
-/* One drive that brakes, or goes back to its place; can402_stop.c. */
+/* One drive that brakes; can402_stop.c. */
 struct can402_stop {
 	int32_t was;			/* increments: the previous target */
 	double speed;			/* increments a period, at the start */
 	double a;			/* ... a period^2: how hard it brakes */
 	double at;			/* increments: where it is by now */
-	int32_t coast;			/* pulses it may be off its place by
-					 * more than resync_max, after a stop */
+	int32_t coast;			/* pulses it may have run on, after a
+					 * stop */
 	bool ill;			/* its drive stops by itself, while the
 					 * others brake on the path */
 };
@@ -78,9 +80,7 @@ struct can402 {
 	can402_brake_fn *brake;
 	void *brake_arg;
 	bool placed;			/* the drives' zeros are set */
-	int32_t resync_max[IO_NAXES];	/* pulses */
 	struct io_outputs out;
-	uint8_t count;
 	double gap_v;
 	struct io_shares shares;
 	bool has_shares;
@@ -88,7 +88,7 @@ struct can402 {
 	struct can402_told told[IO_NAXES];
 	uint32_t malformed, foreign, lost;	/* all so far */
 	uint16_t foreign_id;		/* of another master's last frame */
-	uint32_t bus_warnings, bus_passives;
+	uint32_t states[NOTE_END - NOTE_BUS_WARNING];	/* of the controller */
 	/* Written by read and write, taken by note. */
 	struct can402_note notes[CAN402_NOTES];
 	_Atomic uint32_t put, taken;
@@ -125,12 +125,6 @@ void can402_originate(void *self, const int32_t zero[IO_NAXES]);
 /* -- can402_stop.c -------------------------------------------------------- */
 
 /**
- * can402_stop_follow() - note how far a drive that stops by itself stays behind
- * the targets of its axis.  Once a period, before @out becomes s->out.
- */
-void can402_stop_follow(struct can402 *s, const struct io_outputs *out);
-
-/**
  * can402_stop_step() - once a period, before the drives get their targets.
  *
  * @on: the drives are to have power, and the bus works.
@@ -144,12 +138,6 @@ bool can402_stop_step(struct can402 *s, bool on);
 
 /** can402_stop_target() - the target of drive @i while it brakes, pulses. */
 int32_t can402_stop_target(struct can402 *s, uint32_t i);
-
-/**
- * can402_stop_pace() - set the speeds at which the drives go back to their
- * places, so that all arrive at the same time.
- */
-void can402_stop_pace(struct can402 *s);
 
 /* -- can402_brake.c ------------------------------------------------------- */
 

@@ -29,7 +29,7 @@ double can402_load(const struct can402_bus *b, double period_us)
 {
 	const uint32_t pdos = b->axes * (can_bits(RPDO_BYTES) +
 					 can_bits(TPDO_BYTES));
-	const uint32_t others = (uint32_t)(b->gap + b->generator) *
+	const uint32_t others = (b->gap + b->generator) *
 				can_bits(FRAME_BYTES);
 	const double beats = (b->axes + 1) * can_bits(1) * period_us /
 			     (b->heartbeat_ms * 1e3);

@@ -122,6 +122,20 @@ static void say_bus(const struct can402 *s, const struct can402_note *n,
 			 "times); bus off is next; check cable, termination "
 			 "and bit rate", name, n->number);
 		break;
+	case NOTE_BUS_ACTIVE:
+		snprintf(buf, size, "%s: the controller is error active again "
+			 "(%u times): few errors", name, n->number);
+		break;
+	case NOTE_RX_OVERFLOW:
+		snprintf(buf, size, "%s: the controller lost frames that came, "
+			 "%u times; it was not read in time: give its "
+			 "interrupt a higher priority", name, n->number);
+		break;
+	case NOTE_TX_OVERFLOW:
+		snprintf(buf, size, "%s: the controller lost frames that it "
+			 "was to send, %u times; a longer period, or fewer "
+			 "nodes", name, n->number);
+		break;
 	case NOTE_DOWN:
 		snprintf(buf, size, "%s is down; ip link set %s up", name,
 			 name);

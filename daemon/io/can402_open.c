@@ -52,7 +52,7 @@ static int check_load(const struct machine_config *c, struct interp_diag *diag)
 		.bitrate = (uint32_t)(c->can402.bitrate_kbit * 1000),
 		.heartbeat_ms = (uint32_t)c->can402.heartbeat_ms,
 		.gap = c->can402.gap_id > 0,
-		.generator = c->can402.generator_id > 0,
+		.generator = config_generator_frames(c, c->can402.interface),
 	};
 	const double us = (double)config_period_ns(c) * 1e-3;
 	double load;
@@ -144,8 +144,6 @@ static struct drive_config drive_of(const struct machine_config *c, int axis)
 		.missing_max = (uint32_t)k->missing_max,
 		.following_max = (int32_t)(k->following_mm / pulse_mm),
 		.lag_cycles = k->following_s * 1e6 / period_us,
-		.slew_increments = (int32_t)fmax(1, k->resync_mm_s *
-			increments_mm * period_us * 1e-6),
 		.limited_cycles = (uint32_t)(LIMITED_US / period_us),
 		.absolute = d->absolute, .held = is_held(d),
 		.no_follow_bit = !d->follow_bit,
@@ -195,8 +193,6 @@ static void add_drives(struct can402 *s, const struct machine_config *c)
 		s->axis[s->n] = (uint8_t)i;
 		if (c->drive[i].brake == BRAKE_LINE)
 			s->braked |= 1u << i;
-		s->resync_max[i] = (int32_t)(c->can402.resync_mm /
-					     c->axes.axis[i].pulse_mm);
 		s->stop[s->n].a = brakes_by(c, i, &d);
 		drive_init(&s->drive[s->n++], &d);
 	}

@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * can402_stop.c - drives that brake together, and go back together
+ * can402_stop.c - drives that brake together
  *
  * A drive that has a fault stops by itself, and the cycle brakes the others on
  * the path before it takes their power.  When power is taken from drives that
  * move, as in an e-stop, they would leave the path at any angle if each stopped
  * as fast as it can.  So they brake along the tangent of the path: in a period
  * each loses the same part of its speed, and all need the time of the slowest.
- *
- * On the way back each drive goes the same part of its distance in a period, so
- * that all go along one line and arrive in the same period.
  */
 #include "can402_bus.h"
 
@@ -35,7 +32,7 @@ static double measure(struct can402 *s)
 		struct can402_stop *t = &s->stop[i];
 		const struct drive *d = &s->drive[i];
 
-		t->speed = d->arrived ? speed_of(d, t) : 0;
+		t->speed = d->joined ? speed_of(d, t) : 0;
 		t->at = d->target;
 		most = fmax(most, fabs(t->speed) / t->a);
 	}
@@ -75,17 +72,6 @@ static void part(struct can402 *s)
 	}
 }
 
-void can402_stop_follow(struct can402 *s, const struct io_outputs *out)
-{
-	for (uint32_t i = 0; i < s->n; i++) {
-		const uint8_t axis = s->axis[i];
-
-		if (s->were_on && s->stop[i].ill)
-			s->stop[i].coast += abs(minus(out->target[axis],
-						      s->out.target[axis]));
-	}
-}
-
 bool can402_stop_step(struct can402 *s, bool on)
 {
 	if (on) {
@@ -101,7 +87,7 @@ bool can402_stop_step(struct can402 *s, bool on)
 	s->were_on = on;
 	for (uint32_t i = 0; i < s->n; i++) {
 		s->stop[i].was = s->drive[i].target;
-		if (on && s->drive[i].arrived && !s->stop[i].ill)
+		if (on && s->drive[i].joined && !s->stop[i].ill)
 			s->stop[i].coast = 0;
 	}
 	return on || s->stopping > 0;
@@ -117,31 +103,4 @@ int32_t can402_stop_target(struct can402 *s, uint32_t i)
 	t->at += t->speed * part;
 	from = (int32_t)((uint32_t)llround(t->at) - (uint32_t)d->zero);
 	return (int32_t)(from * d->c.pulses / d->c.increments);
-}
-
-void can402_stop_pace(struct can402 *s)
-{
-	double periods = 1;
-	bool ready = !can402_brake_opens(s);
-
-	for (uint32_t i = 0; i < s->n; i++)
-		ready = ready && s->drive[i].led;
-	for (uint32_t i = 0; i < s->n && ready; i++) {
-		const struct drive *d = &s->drive[i];
-		const int32_t want = drive_wanted(d, s->out.target[s->axis[i]]);
-		const double off = (int32_t)((uint32_t)want -
-					     (uint32_t)d->target);
-
-		if (!d->arrived)
-			periods = fmax(periods, ceil(fabs(off) /
-						     d->c.slew_increments));
-	}
-	for (uint32_t i = 0; i < s->n; i++) {
-		struct drive *d = &s->drive[i];
-		const int32_t want = drive_wanted(d, s->out.target[s->axis[i]]);
-		const double off = (int32_t)((uint32_t)want -
-					     (uint32_t)d->target);
-
-		d->slew = ready ? (int32_t)ceil(fabs(off) / periods) : 0;
-	}
 }

@@ -99,7 +99,11 @@ static enum can_got take_error(const struct can_frame *f)
 		return CAN_PASSIVE;
 	if (control & (CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING))
 		return CAN_WARNING;
-	return CAN_ODD;
+	if (control & CAN_ERR_CRTL_RX_OVERFLOW)
+		return CAN_RX_OVERFLOW;
+	if (control & CAN_ERR_CRTL_TX_OVERFLOW)
+		return CAN_TX_OVERFLOW;
+	return control & CAN_ERR_CRTL_ACTIVE ? CAN_ACTIVE : CAN_ODD;
 }
 
 static enum can_got take(const struct can_frame *f, struct can_msg *ret)

@@ -22,7 +22,10 @@ enum can_got {
 	CAN_BUS_OFF,			/* the controller left the bus, */
 	CAN_RESTARTED,			/* ... and has come back to it */
 	CAN_WARNING,			/* it counts many errors, */
-	CAN_PASSIVE,			/* ... and more: bus off is next */
+	CAN_PASSIVE,			/* ... and more: bus off is next; */
+	CAN_ACTIVE,			/* few again */
+	CAN_RX_OVERFLOW,		/* it lost frames that came, */
+	CAN_TX_OVERFLOW,		/* ... or that were sent */
 	CAN_DOWN,			/* the interface is down or gone */
 };
 

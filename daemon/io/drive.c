@@ -19,15 +19,16 @@
 #define FOLLOWS		0x1000u		/* bits of the statusword in mode 8 */
 #define FOLLOWING_ERROR	0x2000u
 #define AT_LIMIT	0x0800u
+#define VOLTAGE		0x0010u
+#define POWER_MS	200		/* a drive is ready to switch on after
+					 * so long, if it can be */
 #define NMT_OPERATIONAL	0x05
 #define ALARM_SYNCS	2		/* an answer under way may be older */
 #define SURPLUS_MAX	2		/* answers more than SYNCs */
 
 void drive_init(struct drive *d, const struct drive_config *c)
 {
-	*d = (struct drive) {
-		.c = *c, .goal = DRIVE_GO_OFF, .slew = c->slew_increments
-	};
+	*d = (struct drive) { .c = *c, .goal = DRIVE_GO_OFF };
 }
 
 /* What the set-up wrote may be gone, or the drive may not run any more. */
@@ -67,12 +68,22 @@ static int32_t wrapped(int64_t x)
 	return (int32_t)(uint32_t)(uint64_t)x;
 }
 
-int32_t drive_place(const struct drive *d)
+static int32_t place_of(const struct drive *d, int32_t increments)
 {
-	const int64_t from = wrapped((int64_t)d->actual - d->zero);
+	const int64_t from = wrapped((int64_t)increments - d->zero);
 	const int64_t twice = 2 * from * d->c.pulses + d->c.increments;
 
 	return (int32_t)floor_div(twice, 2 * (int64_t)d->c.increments);
+}
+
+int32_t drive_place(const struct drive *d)
+{
+	return place_of(d, d->actual);
+}
+
+int32_t drive_stands_at(const struct drive *d)
+{
+	return place_of(d, d->led ? d->target : d->actual);
 }
 
 static int64_t in_pulses(const struct drive *d, int64_t increments)
@@ -157,8 +168,10 @@ static void hear_state(struct drive *d, const struct can_msg *m)
 static void hear_emergency(struct drive *d, const struct can_msg *m)
 {
 	d->emergency = (uint16_t)can_get(m->data, 2);
-	if (d->emergency == 0)
+	if (d->emergency == 0) {
+		d->alarmed = 0;
 		return;
+	}
 	d->emergencies++;
 	d->alarmed = ALARM_SYNCS;
 }
@@ -224,11 +237,12 @@ static void watch_lag(struct drive *d)
 	d->lag = fmax(left, k * (double)way);
 }
 
-static void watch_following(struct drive *d)
+/* Pulses from the measured place to the nearest of the targets that it may
+ * belong to, less @lag increments. */
+static int64_t outside(const struct drive *d, int64_t lag)
 {
 	int64_t low = INT32_MAX, high = INT32_MIN;
 
-	watch_lag(d);
 	/* Differences from the place are taken, because places wrap at 2^32. */
 	for (int i = 0; i < DRIVE_SENT; i++) {
 		const int64_t off = wrapped((int64_t)d->sent[i] - d->actual);
@@ -236,11 +250,31 @@ static void watch_following(struct drive *d)
 		low = off < low ? off : low;
 		high = off > high ? off : high;
 	}
-	low = low > 0 ? low : high < 0 ? -high : 0;
-	low -= (int64_t)d->lag;
-	if (d->c.following_max > 0 && d->enabled_for > DRIVE_SENT && low > 0 &&
-	    in_pulses(d, low) > d->c.following_max)
+	low = (low > 0 ? low : high < 0 ? -high : 0) - lag;
+	return low > 0 ? in_pulses(d, low) : 0;
+}
+
+static void watch_following(struct drive *d)
+{
+	watch_lag(d);
+	if (d->c.following_max > 0 && d->enabled_for > DRIVE_SENT &&
+	    outside(d, (int64_t)d->lag) > d->c.following_max)
 		trouble(d, DRIVE_FOLLOWING);
+}
+
+/*
+ * Bit 11 stays on while an axis leaves the limit that it stands on.  Its target
+ * is clipped only if it is beside its target and does not go along with it.
+ */
+static bool is_clipped(const struct drive *d)
+{
+	const int64_t asked = llabs(wrapped((int64_t)d->sent[0] - d->sent[1]));
+	const int64_t left = wrapped((int64_t)d->sent[0] - d->actual);
+	const int64_t gone = wrapped((int64_t)d->actual - d->was);
+
+	if (!(d->status & AT_LIMIT) || outside(d, 0) <= 1)
+		return false;
+	return left * gone <= 0 || 2 * llabs(gone) < asked;
 }
 
 bool drive_follows(const struct drive *d)
@@ -262,13 +296,46 @@ static void watch_bits(struct drive *d)
 		return;
 	if (d->status & FOLLOWING_ERROR)
 		trouble(d, DRIVE_FOLLOWING);
-	d->limited_for = d->status & AT_LIMIT ? d->limited_for + 1 : 0;
+	d->limited_for = is_clipped(d) ? d->limited_for + 1 : 0;
 	if (d->limited_for > d->c.limited_cycles)
 		trouble(d, DRIVE_LIMITED);
 }
 
+static uint32_t cycles_of(const struct drive *d, uint32_t ms)
+{
+	const uint32_t n = ms * 1000 / d->c.period_us;
+
+	return n > 0 ? n : 1;
+}
+
+bool drive_lacks_power(const struct drive *d)
+{
+	return d->lacking > cycles_of(d, POWER_MS);
+}
+
+/* A drive that is to have power and could be switched on is watched: if it
+ * cannot be any more, it must not go on by itself when it can be again. */
+static void watch_power(struct drive *d)
+{
+	const bool ready = d->state == DRIVE_READY ||
+			   d->state == DRIVE_SWITCHED_ON;
+	const bool on = d->goal == DRIVE_GO_ON && !d->led;
+
+	d->shows_voltage = d->shows_voltage ||
+			   (d->state == DRIVE_READY && d->status & VOLTAGE);
+	if (d->state == DRIVE_DISABLED ||
+	    (ready && d->shows_voltage && !(d->status & VOLTAGE)))
+		d->lacking++;
+	else
+		d->lacking = 0;
+	if (on && d->lacking > 0 && (d->readied || drive_lacks_power(d)))
+		trouble(d, DRIVE_POWERLESS);
+	d->readied = on && (d->readied || (ready && d->lacking == 0));
+}
+
 static void watch_state(struct drive *d)
 {
+	watch_power(d);
 	if (d->state == DRIVE_ENABLED) {
 		d->enabled_for++;
 		if (d->goal == DRIVE_GO_ON)
@@ -331,6 +398,7 @@ void drive_sync(struct drive *d)
 		trouble(d, d->strange ? DRIVE_STRANGE : DRIVE_NO_ANSWER);
 	}
 	d->answered = false;
+	d->was = d->actual;
 	for (int i = DRIVE_SENT - 1; i > 0; i--)
 		d->sent[i] = d->sent[i - 1];
 	d->sent[0] = d->target;
@@ -347,13 +415,6 @@ static bool waits_for_mode(struct drive *d)
 		return false;
 	}
 	return d->mode_waited++ < d->c.answer_cycles;
-}
-
-static uint32_t cycles_of(const struct drive *d, uint32_t ms)
-{
-	const uint32_t n = ms * 1000 / d->c.period_us;
-
-	return n > 0 ? n : 1;
 }
 
 /*
@@ -382,17 +443,6 @@ static uint16_t control_word(struct drive *d)
 			     DRIVE_GO_STOP, d->state);
 }
 
-/* Go slowly from where it stands to where it is wanted. */
-static void approach(struct drive *d, int32_t want)
-{
-	const int64_t left = wrapped((int64_t)want - d->target);
-	const int64_t most = d->slew;
-
-	d->target = wrapped((int64_t)d->target +
-			    (left > most ? most : left < -most ? -most : left));
-	d->arrived = d->target == want;
-}
-
 int32_t drive_wanted(const struct drive *d, int32_t target)
 {
 	return wrapped((int64_t)d->zero + drive_to_increments(&d->c, target));
@@ -400,18 +450,15 @@ int32_t drive_wanted(const struct drive *d, int32_t target)
 
 static void aim_at(struct drive *d, int32_t target)
 {
-	const int32_t want = drive_wanted(d, target);
+	const bool follows = d->led && d->state == DRIVE_ENABLED &&
+			     d->homed && !d->lost;
 
-	if (!d->led || d->state != DRIVE_ENABLED || d->goal != DRIVE_GO_ON ||
-	    !d->homed || d->lost) {
+	d->joined = d->joined && follows && d->goal == DRIVE_GO_ON;
+	/* One that is slow to obey a stop still goes to its last target. */
+	if (!follows)
 		d->target = d->actual;
-		d->arrived = false;
-		return;
-	}
-	if (d->arrived)
-		d->target = want;
-	else
-		approach(d, want);
+	else if (d->joined)
+		d->target = drive_wanted(d, target);
 }
 
 size_t drive_emit(struct drive *d, int32_t target, struct can_msg *ret)
@@ -465,9 +512,4 @@ void drive_reset(struct drive *d)
 	drive_setup_again(d);
 	d->state = DRIVE_NOT_READY;
 	d->heard = d->stands = false;
-}
-
-void drive_depart(struct drive *d)
-{
-	d->arrived = false;
 }

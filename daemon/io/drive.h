@@ -78,6 +78,7 @@ enum drive_trouble {
 	DRIVE_NOT_LED,			/* bit 12: it ignores its target */
 	DRIVE_LIMITED,			/* bit 11: its target is clipped */
 	DRIVE_NOT_STARTED,		/* NMT: not operational any more */
+	DRIVE_POWERLESS,		/* it does not take power, or lost it */
 	DRIVE_TWICE,			/* more answers than SYNCs: whose are
 					 * they? */
 	DRIVE_NTROUBLES
@@ -107,8 +108,6 @@ struct drive_config {
 	int32_t following_max;		/* pulses; 0: not supervised */
 	double lag_cycles;		/* it may lag by what it moves in this
 					 * many cycles */
-	int32_t slew_increments;	/* in a cycle, on the way to its place
-					 * after it was enabled */
 	uint32_t limited_cycles;	/* bit 11 may be set for this long */
 	bool absolute;			/* it keeps its place without power */
 	bool held;			/* it has no brake and keeps its torque
@@ -162,14 +161,15 @@ struct drive {
 	bool stands;			/* ... in a state that has a place */
 	bool homed;			/* zero is set: targets are ours */
 	bool lost;			/* it restarted: zero means nothing */
-	int32_t actual;			/* increments, as measured */
+	int32_t actual, was;		/* increments, as measured, now and a
+					 * period ago */
 	int32_t zero;			/* increments at pulse 0 */
 	int32_t target;			/* increments, as last sent */
 	int32_t sent[DRIVE_SENT];	/* targets of the last SYNCs */
-	int32_t slew;			/* increments it may approach by, now */
 	double lag;			/* increments it may lag by, now */
 	bool led;			/* enabled, and follows its targets */
-	bool arrived;			/* ... and on the machine's place */
+	bool joined;			/* ... which are those of the cycle;
+					 * before, it is held where it stood */
 	uint32_t step, tries;		/* SDO */
 	uint32_t word;			/* read last, for the steps after it */
 	uint32_t choice;		/* of interpolation times */
@@ -189,6 +189,11 @@ struct drive {
 	uint32_t enabled_for;		/* cycles in operation enabled */
 	uint32_t limited_for;		/* ... at an internal limit */
 	uint32_t mode_waited;		/* cycles switched on in another mode */
+	uint32_t lacking;		/* cycles in which it cannot be switched
+					 * on */
+	bool readied;			/* it could, since it is to have
+					 * power */
+	bool shows_voltage;		/* bit 4 tells of its supply */
 	uint32_t warnings;		/* times a bit of DRIVE_WARNS came */
 	bool answered;			/* a TPDO came since the last SYNC */
 	bool strange;			/* the last statusword was no state */
@@ -233,11 +238,6 @@ void drive_aim(struct drive *d, enum drive_goal goal);
  */
 void drive_reset(struct drive *d);
 
-/**
- * drive_depart() - the next target is far from the last one: go there slowly.
- */
-void drive_depart(struct drive *d);
-
 /** drive_set_zero() - the position that it measures now is place @pulses. */
 void drive_set_zero(struct drive *d, int32_t pulses);
 
@@ -249,6 +249,10 @@ void drive_keep_zero(struct drive *d, int32_t zero);
 
 /** drive_place() - its actual position in pulses, rounded to the nearest. */
 int32_t drive_place(const struct drive *d);
+
+/** drive_stands_at() - where it begins when it joins, in pulses: its actual
+ *  position, or, once it has torque, where it is held. */
+int32_t drive_stands_at(const struct drive *d);
 
 /**
  * drive_to_increments() - exact for every pulse, so that no rounding adds up.
@@ -273,6 +277,16 @@ int32_t drive_wanted(const struct drive *d, int32_t target);
  * drive_follows() - does it show mode 8, and report that it follows its target?
  */
 bool drive_follows(const struct drive *d);
+
+/**
+ * drive_lacks_power() - is it without power, so that it cannot be enabled: by
+ * safe torque off, by its supply or by an input of its own?
+ *
+ * At rest a drive is kept ready to switch on, which gives no torque.  One that
+ * stays switch on disabled may not be enabled.  If bit 4 of its statusword,
+ * voltage enabled, was ever on in that state, it must be.
+ */
+bool drive_lacks_power(const struct drive *d);
 
 /** drive_control() - the controlword that leads from state @s toward @goal. */
 uint16_t drive_control(enum drive_goal goal, enum drive_state s);

@@ -94,6 +94,10 @@ static int on_key(void *user, const char *section, const char *name,
 	struct eds *e = user;
 	long long x;
 
+	/* A line without a = is one without a value, or none at all: it depends
+	 * on how the library was built. */
+	if (!value)
+		return 1;
 	if (strcasecmp(name, "CompactPDO") == 0 && number(value, 0, &x))
 		e->compact_pdo = x != 0;
 	for (size_t i = 0; i < e->n; i++) {

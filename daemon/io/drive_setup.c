@@ -84,6 +84,8 @@ static size_t start(struct drive *d, struct can_msg *ret)
 	d->busy = 0;
 	d->silent = 0;
 	d->missing = 0;
+	d->alarmed = 0;
+	d->lacking = 0;
 	d->heard = d->stands = false;
 	*ret = nmt(d, NMT_START);
 	return 1;

@@ -33,6 +33,7 @@ static const uint16_t control[DRIVE_NGOALS][DRIVE_NSTATES] = {
 		[DRIVE_ENABLED]		= SHUTDOWN,
 	},
 	[DRIVE_GO_STOP] = {
+		[DRIVE_DISABLED]	= SHUTDOWN,
 		[DRIVE_READY]		= SHUTDOWN,
 		[DRIVE_SWITCHED_ON]	= SHUTDOWN,
 		[DRIVE_ENABLED]		= QUICK_STOP,
@@ -100,6 +101,8 @@ const char *drive_trouble_name(enum drive_trouble t)
 					  "synchronous position",
 		[DRIVE_NOT_LED]		= "ignores its target: bit 12 of its "
 					  "statusword is 0",
+		[DRIVE_POWERLESS]	= "has no power: safe torque off, its "
+					  "supply, or its enable input",
 		[DRIVE_LIMITED]		= "clips its target: bit 11 of its "
 					  "statusword stays 1",
 		[DRIVE_TWICE]		= "answers more often than it is "

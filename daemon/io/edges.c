@@ -9,12 +9,14 @@
  */
 #include "edges.h"
 #include "clocks.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <pthread.h>
 #include <sched.h>
-#include <signal.h>
+#include <semaphore.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -50,6 +52,10 @@ struct edges {
 	int32_t held_at[IO_NAXES];	/* target when a stop was told */
 	bool held;
 	int64_t slot_at_ns;		/* the last slot began then or before */
+	int64_t changed_ns;		/* slot_at_ns of the last change */
+	int pin_err, rank_err;		/* errno of its rights */
+	bool noted;
+	sem_t ready;
 	struct quickest quickest;	/* from waking to the end of a write */
 	struct edges_shown seen;	/* by the cycle */
 	pthread_t thread;
@@ -68,6 +74,9 @@ static void post(struct mailbox *m, const void *what, size_t bytes)
 	uint32_t words[WORDS];
 
 	memcpy(words, what, bytes);
+	/* A reader that sees one of these words sees that the message before is
+	 * out, too, and so that the writer has come round. */
+	atomic_thread_fence(memory_order_release);
 	for (size_t i = 0; i < bytes / 4; i++)
 		atomic_store_explicit(&b->word[i], words[i],
 				      memory_order_relaxed);
@@ -234,6 +243,7 @@ static bool write_lines(struct edges *e, int64_t woke_ns)
 	const int64_t end_ns = clock_ns(CLOCK_MONOTONIC);
 
 	e->slot_at_ns = end_ns - quickest_of(&e->quickest, end_ns - woke_ns);
+	e->changed_ns = e->slot_at_ns;
 	return ok;
 }
 
@@ -255,6 +265,8 @@ static void play_slot(struct edges *e, uint32_t slot, int64_t at_ns)
 
 	if (at_ns < e->slot_at_ns + slot_ns)
 		at_ns = e->slot_at_ns + slot_ns;
+	if (at_ns < e->changed_ns + pulser_level_ns(&e->pulser))
+		at_ns = e->changed_ns + pulser_level_ns(&e->pulser);
 	woke = wait_until(at_ns);
 	e->last_shown.late += woke - at_ns > slot_ns;
 	heed_stop(e);
@@ -288,19 +300,26 @@ static void play(struct edges *e, int64_t from_ns)
 	show(e, true);
 }
 
-static void be_real(const struct edges_config *c)
+static void be_real(struct edges *e)
 {
+	const struct edges_config *c = &e->c;
 	const struct sched_param p = { .sched_priority = c->priority };
 	cpu_set_t set;
 
 	if (c->cpu >= 0) {
 		CPU_ZERO(&set);
 		CPU_SET((size_t)c->cpu, &set);
-		pthread_setaffinity_np(pthread_self(), sizeof(set), &set);
+		e->pin_err = pthread_setaffinity_np(pthread_self(),
+						    sizeof(set), &set);
 	}
 	if (c->priority > 0)
-		pthread_setschedparam(pthread_self(), SCHED_FIFO, &p);
-	pthread_setname_np(pthread_self(), "edmd-edges");
+		e->rank_err = pthread_setschedparam(pthread_self(), SCHED_FIFO,
+						    &p);
+}
+
+int64_t edges_next_ns(int64_t now_ns, int64_t period_ns)
+{
+	return now_ns - now_ns % period_ns + period_ns;
 }
 
 static void *run(void *arg)
@@ -308,13 +327,15 @@ static void *run(void *arg)
 	struct edges *e = arg;
 	int64_t next;
 
-	be_real(&e->c);
+	be_real(e);
+	sem_post(&e->ready);
 	learn_quickest(e);
 	while (!atomic_load(&e->quit) && atomic_load(&e->told.n) == 0)
 		sleep_until(clock_ns(CLOCK_MONOTONIC) + IDLE_NS);
-	next = clock_ns(CLOCK_MONOTONIC) + e->c.period_ns / 2;
+	/* The cycle wakes half a period before; daemon/setup/clock.h. */
+	next = edges_next_ns(clock_ns(CLOCK_MONOTONIC), e->c.period_ns);
 	while (!atomic_load(&e->quit)) {
-		int64_t late = clock_ns(CLOCK_MONOTONIC) - next;
+		const int64_t late = clock_ns(CLOCK_MONOTONIC) - next;
 
 		/* Periods that were missed are left out. */
 		if (late > e->c.period_ns)
@@ -333,23 +354,36 @@ static void *run(void *arg)
 int edges_start(struct edges **ret, const struct edges_config *c)
 {
 	struct edges *e = calloc(1, sizeof(*e));
-	sigset_t all, before;
 	int err;
 
 	if (!e)
 		return -ENOMEM;
 	e->c = *c;
 	pulser_init(&e->pulser, &c->pulser);
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	err = pthread_create(&e->thread, NULL, run, e);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	sem_init(&e->ready, 0, 0);
+	err = thread_start(&e->thread, &(struct thread) {
+		.name = "edmd-edges", .run = run, .arg = e });
 	if (err) {
 		free(e);
-		return -err;
+		return err;
 	}
+	while (sem_wait(&e->ready) < 0 && errno == EINTR)
+		;
 	*ret = e;
 	return 0;
+}
+
+bool edges_note(struct edges *e, char *buf, size_t size)
+{
+	if (!e || e->noted || !(e->pin_err || e->rank_err))
+		return false;
+	e->noted = true;
+	snprintf(buf, size, "edge thread: %s: %s; pulses come late under load: "
+		 "%s", e->pin_err ? "core of its own" : "real-time priority",
+		 strerror(e->pin_err ? e->pin_err : e->rank_err),
+		 e->pin_err ? "[gpio] edges_cpu = a core that is online" :
+			      "LimitRTPRIO=99 in edmd.service");
+	return true;
 }
 
 void edges_end(struct edges *e)

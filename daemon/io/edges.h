@@ -20,7 +20,8 @@
  * Units: pulses; slots are the periods of pulser.h.
  *
  * Threads: edges_start() and edges_end() are startup only. edges_tell() and
- * edges_ask() are RT-safe and belong to the cycle. @write is called by the edge
+ * edges_ask() are RT-safe and belong to the cycle; edges_note() belongs to the
+ * thread that logs. @write is called by the edge
  * thread.
  */
 #ifndef IO_EDGES_H
@@ -57,11 +58,24 @@ struct edges_shown {
 
 struct edges;
 
-/** edges_start() - Return: 0 or -errno; -EPERM: no right to its priority. */
+/**
+ * edges_next_ns() - the first multiple of the period behind @now_ns.
+ *
+ * The thread begins its periods there.  The cycle wakes in the middle between
+ * two of them (setup_clock_start()), so each has half a period in which the
+ * other may be late.
+ */
+int64_t edges_next_ns(int64_t now_ns, int64_t period_ns);
+
+/** edges_start() - Return: 0 or -errno. */
 int edges_start(struct edges **ret, const struct edges_config *c);
 
 /** edges_end() - finish the pulse under way and leave the lines alone. */
 void edges_end(struct edges *e);
+
+/** edges_note() - once: the rights that the host did not give to the thread, as
+ *  a line for the log.  false: it has all of them.  @e may be NULL. */
+bool edges_note(struct edges *e, char *buf, size_t size);
 
 void edges_tell(struct edges *e, const struct edges_told *t);
 void edges_ask(struct edges *e, struct edges_shown *ret);

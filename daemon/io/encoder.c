@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * encoder.c - where an axis truly is, and how many pulses it has lost
+ * encoder.c - where an axis truly is
  */
 #include "encoder.h"
 
@@ -49,7 +49,7 @@ static void watch(struct encoder *e, int32_t put)
 	const int32_t way = abs(minus(put, e->put));
 	const double k = e->c.lag_cycles;
 	const double left = k > 0 ? e->lag * k / (k + 1) : 0;
-	const int32_t off = abs(minus(minus(put, e->lost), e->at));
+	const int32_t off = abs(minus(put, e->at));
 
 	/* Counts are two cycles older than pulses: allow the way of two. */
 	e->lag = fmax(left, (k + 2) * way);
@@ -57,17 +57,19 @@ static void watch(struct encoder *e, int32_t put)
 		e->too_far = true;
 }
 
-void encoder_look(struct encoder *e, int64_t count, bool ok, int32_t put)
+void encoder_look(struct encoder *e, int64_t count, bool ok, int32_t put,
+		  bool follows)
 {
 	e->count = count;
 	if (!e->stands) {
 		e->put = put;
-		stand_at(e, minus(put, e->lost));
+		stand_at(e, put);
 	}
 	e->at = pulses_of(e, e->count - e->zero);
 	e->ill = e->ill || !ok;
 	e->too_far = e->too_far || e->ill;
-	watch(e, put);
+	if (follows)
+		watch(e, put);
 	e->put = put;
 }
 
@@ -82,33 +84,11 @@ void encoder_shift(struct encoder *e, int32_t by)
 
 bool encoder_reset(struct encoder *e)
 {
-	const int32_t missing = minus(minus(e->put, e->lost), e->at);
-	const bool gone = e->ill || abs(missing) > e->c.resync_max;
+	const bool gone = e->ill;
 
-	if (!e->too_far)
-		return false;
 	e->too_far = e->ill = false;
 	e->lag = 0;
 	if (gone)
-		stand_at(e, minus(e->put, e->lost));
-	else
-		e->lost = minus(e->put, e->at);
+		stand_at(e, e->put);
 	return gone;
-}
-
-int32_t encoder_extra(struct encoder *e, bool go)
-{
-	const int32_t left = minus(e->lost, e->extra);
-	int32_t step;
-
-	e->owed = go && left ? fmin(e->owed + e->c.slew, abs(left)) : 0;
-	step = (int32_t)e->owed;
-	e->owed -= step;
-	e->extra += left < 0 ? -step : step;
-	return e->extra;
-}
-
-bool encoder_is_well(const struct encoder *e)
-{
-	return !e->too_far && e->extra == e->lost;
 }

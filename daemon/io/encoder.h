@@ -5,9 +5,8 @@
  * A stepper motor does not say that it has stalled.  An encoder on the axis
  * shows it: the measured place and the pulses that were put out then differ by
  * more than following_max.  The axis is in trouble until an operator resets it.
- * The reset trusts the encoder: the pulses that moved nothing are put out once
- * more, slowly, after the next start.  The place of the axis is lost if there
- * are too many of them, or if the encoder itself has missed counts.
+ * The axis is where the encoder says, and goes on from there.  Its place is
+ * lost if the encoder itself has missed counts.
  *
  * Units: pulses, if nothing else is said; a count is a quarter period of the
  * encoder.  Threads: encoder_init() is startup only; all others are RT-safe.
@@ -25,20 +24,13 @@ struct encoder_config {
 	int32_t following_max;		/* 0: not supervised */
 	double lag_cycles;		/* the axis may lag by what it moves in
 					 * this many cycles */
-	int32_t resync_max;		/* at most this many lost pulses are put
-					 * out once more, ... */
-	double slew;			/* ... this many in a cycle */
 };
 
 struct encoder {
 	struct encoder_config c;
 	int64_t count, zero;		/* counts: now, and at pulse 0 */
 	int32_t at;			/* measured place */
-	int32_t lost;			/* pulses known to have moved nothing */
-	int32_t extra;			/* of these, put out once more so far */
 	int32_t put;			/* all pulses put out, a cycle ago */
-	double owed;			/* the part of a pulse that slew has
-					 * not put out yet */
 	double lag;			/* how far the axis may lag now */
 	bool stands;			/* zero is known */
 	bool ill;			/* counts were missed */
@@ -51,10 +43,12 @@ void encoder_init(struct encoder *e, const struct encoder_config *c);
 /**
  * encoder_look() - once a cycle: compare the place with the pulses.
  *
- * @count: as read; @ok: no count was missed; @put: all pulses put out by now.
+ * @count: as read; @ok: no count was missed; @put: all pulses put out by now;
+ * @follows: the axis has power, and must be where they lead.
  * The first call sets where the axis is.
  */
-void encoder_look(struct encoder *e, int64_t count, bool ok, int32_t put);
+void encoder_look(struct encoder *e, int64_t count, bool ok, int32_t put,
+		  bool follows);
 
 /** encoder_shift() - from now on the place has a number greater by @by. */
 void encoder_shift(struct encoder *e, int32_t by);
@@ -64,13 +58,5 @@ void encoder_shift(struct encoder *e, int32_t by);
  * Return: true if the place of the axis is lost with it.
  */
 bool encoder_reset(struct encoder *e);
-
-/** encoder_extra() - the pulses to add to the target.  @go: put out lost pulses
- *  now. */
-int32_t encoder_extra(struct encoder *e, bool go);
-
-/** encoder_is_well() - is there no trouble, and was every lost pulse put out
- *  once more? */
-bool encoder_is_well(const struct encoder *e);
 
 #endif /* IO_ENCODER_H */

@@ -10,9 +10,11 @@
  * again: no pulses, no sparks, no watchdog wave, also on the other chips.
  */
 #include "gpio_own.h"
+#include "clocks.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static bool is_on(const struct gpio *g, int line)
 {
@@ -172,42 +174,59 @@ static int32_t minus(int32_t a, int32_t b)
 	return (int32_t)((uint32_t)a - (uint32_t)b);
 }
 
-/* An e-stop and a limit switch end the pulses at once, not with the period. */
-static void pulses_order(struct gpio *g, const int32_t *target, bool anew)
+/*
+ * An e-stop and a limit switch end the pulses at once, not with the period.
+ * Axes that have not joined make no pulses, and what was left is forgotten.
+ */
+static void pulses_order(struct gpio *g, const int32_t *target, bool stands)
 {
 	const uint32_t ends = axes_on(g, LINE_LIMIT);
 
 	for (int i = 0; i < IO_NAXES; i++) {
-		if (anew)
+		if (!g->joined)
+			g->told.target[i] = g->shown.put[i];
+		if (stands)
 			g->shift[i] = minus(target[i], g->told.target[i]);
 		g->told.target[i] = minus(target[i], g->shift[i]);
 	}
-	g->told.stop = is_on(g, LINE_ESTOP) || (ends & ~g->ends);
+	g->told.stop = is_on(g, LINE_ESTOP) || (ends & ~g->ends) || !g->joined;
 	g->ends = ends;
 	edges_tell(g->edges, &g->told);
 }
 
-/* A new program begins where the machine stands, so it makes no pulses. */
+/* The period before was written late: an edge now would be too near. */
+static bool edge_is_early(const struct gpio *g)
+{
+	const int64_t least = pulser_level_ns(&g->pulser);
+
+	return least > 0 && g->pulser.left <= 1 &&
+	       clock_ns(CLOCK_MONOTONIC) - g->changed_ns < least;
+}
+
+/* A new program begins where the machine stands, so it makes no pulses, and the
+ * place there gets another number.  Axes that have not joined make none. */
 static void pulses_make(struct gpio *g, const struct io_outputs *out)
 {
-	const bool anew = !g->placed || out->path != g->path;
-	int32_t target[IO_NAXES], before[IO_NAXES];
+	const bool first = !g->placed, anew = first || out->path != g->path;
+	const bool stands = anew || !g->joined;
+	int32_t before[IO_NAXES];
 
-	for (int i = 0; i < IO_NAXES; i++) {
-		target[i] = (int32_t)((uint32_t)out->target[i] +
-				      (uint32_t)g->extra[i]);
+	for (int i = 0; i < IO_NAXES; i++)
 		before[i] = gpio_put(g, i);
-	}
 	g->placed = true;
 	g->path = out->path;
-	if (anew && !g->edges)
-		pulser_stand_at(&g->pulser, target);
-	else if (g->edges)
-		pulses_order(g, target, anew);
-	if (anew)
+	if (g->edges)
+		pulses_order(g, out->target, stands);
+	else if (stands)
+		pulser_stand_at(&g->pulser, out->target);
+	if (first || (anew && g->joined))
 		gpio_axes_counted(g, before);
-	if (!g->edges)
-		pulser_period(&g->pulser, target);
+	if (g->edges)
+		return;
+	if (edge_is_early(g))
+		pulser_wait(&g->pulser, out->target);
+	else
+		pulser_period(&g->pulser, out->target);
 }
 
 static bool watchdog_level(struct gpio *g)
@@ -225,7 +244,7 @@ static bool watchdog_level(struct gpio *g)
 void gpio_write(void *self, const struct io_outputs *out)
 {
 	struct gpio *g = self;
-	const uint64_t axes = gpio_axes_write(g, out);
+	const uint64_t axes = gpio_axes_write(g, out), was = g->out;
 
 	if (g->lost) {
 		g->told.stop = true;
@@ -244,6 +263,8 @@ void gpio_write(void *self, const struct io_outputs *out)
 			 (uint64_t)dog << LINE_WATCHDOG | axes;
 	}
 	gpio_outputs_write(g);
+	if (!g->edges && (was ^ g->out) & PULSE_LINES)
+		g->changed_ns = clock_ns(CLOCK_MONOTONIC);
 }
 
 /* -- Close ---------------------------------------------------------------- */

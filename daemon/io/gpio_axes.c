@@ -37,34 +37,37 @@ static void look(struct gpio *g, int i, uint64_t ns)
 	const bool was = e->too_far;
 	const bool ok = quadrature_read(q, ns);
 
-	encoder_look(e, q->count, ok, gpio_put(g, i));
+	encoder_look(e, q->count, ok, gpio_put(g, i), g->joined);
 	if (e->too_far && !was)
 		tell(g, e->ill ? GPIO_TELL_MISSED : GPIO_TELL_OFF, i);
 }
 
-static bool is_ready(const struct gpio *g)
+/* Without an encoder and without lines of power nobody could tell. */
+static bool has_power(const struct gpio *g)
 {
-	return !g->has_power || (g->out >> LINE_ENABLE & 1 &&
-				 g->open_left == 0 && g->close_left > 0);
+	if (!g->has_power)
+		return g->wanted || !g->encoders;
+	return g->out >> LINE_ENABLE & 1 && g->open_left == 0 &&
+	       g->close_left > 0;
 }
 
 void gpio_axes_read(struct gpio *g, struct io_inputs *in)
 {
 	const int64_t ns = g->encoders ? clock_ns(CLOCK_MONOTONIC) : 0;
 
-	in->axes_off = !is_ready(g);
+	g->joined = has_power(g);
+	in->axes_off = !g->joined;
 	in->unplaced = g->unplaced;
 	g->unplaced = 0;
 	for (int i = 0; i < IO_NAXES; i++) {
 		in->actual[i] = gpio_put(g, i);
-		if (!(g->encoders >> i & 1))
-			continue;
-		look(g, i, (uint64_t)ns);
-		in->actual[i] = g->encoder[i].at;
-		if (g->encoder[i].too_far)
-			in->trouble = IO_FOLLOWING;
-		else if (!encoder_is_well(&g->encoder[i]))
-			in->axes_off = true;
+		if (g->encoders >> i & 1) {
+			look(g, i, (uint64_t)ns);
+			in->actual[i] = g->encoder[i].at;
+			if (g->encoder[i].too_far)
+				in->trouble = IO_FOLLOWING;
+		}
+		in->stands_at[i] = in->actual[i];
 	}
 }
 
@@ -104,17 +107,10 @@ static uint64_t power(struct gpio *g, bool on)
 
 uint64_t gpio_axes_write(struct gpio *g, const struct io_outputs *out)
 {
-	const bool on = out->enable && !g->lost;
-	bool back = on;
-
 	if (out->reset)
 		reset(g);
-	for (int i = 0; i < IO_NAXES; i++)
-		back = back && !g->encoder[i].too_far;
-	for (int i = 0; i < IO_NAXES; i++)
-		g->extra[i] = encoder_extra(&g->encoder[i],
-					    back && is_ready(g));
-	return power(g, on);
+	g->wanted = out->enable && !g->lost;
+	return power(g, g->wanted);
 }
 
 void gpio_axes_close(struct gpio *g)
@@ -147,7 +143,7 @@ bool gpio_note(void *self, char *buf, size_t size)
 	};
 	struct gpio *g = self;
 
-	if (adc_note(&g->adc, buf, size))
+	if (adc_note(&g->adc, buf, size) || edges_note(g->edges, buf, size))
 		return true;
 	for (int i = 0; i < GPIO_NTELLS * IO_NAXES; i++) {
 		const int what = i / IO_NAXES, axis = i % IO_NAXES;

@@ -2,6 +2,7 @@
 /*
  * gpio_open.c - the lines as the machine file wants them, or why not
  */
+#include "chips.h"
 #include "gpio_own.h"
 
 #include <assert.h>
@@ -26,51 +27,10 @@ static int refuse(struct interp_diag *d, int err, const char *line,
 static int refuse_chip(struct interp_diag *d, int err, const char *line,
 		       const char *chip)
 {
-	char found[192];
+	char key[48];
 
-	snprintf(found, sizeof(found), "chip %s: %s", chip, strerror(-err));
-	if (err == -EACCES || err == -EPERM)
-		return refuse(d, err, line, found, "a user of group gpio: "
-			      "usermod -aG gpio USER, and 60-edmd.rules in "
-			      "/usr/lib/udev/rules.d");
-	return refuse(d, err, line, found, "[gpio] chip = a name or label "
-		      "that gpiodetect lists");
-}
-
-/*
- * Find a chip by its label, for boards that number their chips anew at each
- * start.  If a chip may not be opened, it may be the one that is looked for.
- */
-static int chip_by_label(struct lines_chip **ret, const char *label)
-{
-	char path[32], has[64];
-	int err = -ENOENT;
-
-	for (int i = 0; i < 64; i++) {
-		int e;
-
-		snprintf(path, sizeof(path), "/dev/gpiochip%d", i);
-		e = lines_chip_open(ret, path);
-		if (e == -EACCES || e == -EPERM)
-			err = e;
-		if (e < 0)
-			continue;
-		lines_chip_label(*ret, has, sizeof(has));
-		if (strcmp(has, label) == 0)
-			return 0;
-		lines_chip_close(*ret);
-	}
-	return err;
-}
-
-static int chip_open(struct lines_chip **ret, const char *name)
-{
-	char path[96];
-	int err;
-
-	snprintf(path, sizeof(path), "%s%s", *name == '/' ? "" : "/dev/", name);
-	err = lines_chip_open(ret, path);
-	return err == -ENOENT && *name != '/' ? chip_by_label(ret, name) : err;
+	snprintf(key, sizeof(key), "gpio.%s", line);
+	return lines_chip_refuse(d, err, key, chip);
 }
 
 /* The number of chip @name, opened if it is a new one. */
@@ -86,7 +46,7 @@ static int chip_find(struct gpio *g, const char *name, const char *line,
 	if (g->nchips == NCHIPS)
 		return refuse(d, -E2BIG, line, "a fifth chip",
 			      "lines on at most four chips");
-	err = chip_open(&c->chip, name);
+	err = lines_chip_named(&c->chip, name);
 	if (err < 0)
 		return refuse_chip(d, err, line, name);
 	snprintf(c->name, sizeof(c->name), "%s", name);
@@ -96,24 +56,12 @@ static int chip_find(struct gpio *g, const char *name, const char *line,
 static int line_check(const struct chip *c, unsigned int offset,
 		      const char *line, struct interp_diag *d)
 {
-	const unsigned int n = lines_chip_count(c->chip);
-	char found[192], wanted[192], user[32];
+	char key[48];
 
-	if (offset >= n) {
-		snprintf(found, sizeof(found), "line %u of %s, which has %u",
-			 offset, c->name, n);
-		snprintf(wanted, sizeof(wanted), "0 to %u; gpioinfo %s", n - 1,
-			 c->name);
-		return refuse(d, -ERANGE, line, found, wanted);
-	}
-	if (lines_chip_user(c->chip, offset, user, sizeof(user))) {
-		snprintf(found, sizeof(found), "line %u of %s is in use by %s",
-			 offset, c->name, user);
-		snprintf(wanted, sizeof(wanted), "a free line; gpioinfo %s "
-			 "lists them; or end %s", c->name, user);
-		return refuse(d, -EBUSY, line, found, wanted);
-	}
-	return 0;
+	snprintf(key, sizeof(key), "gpio.%s", line);
+	return lines_chip_offers(c->chip, c->name, &(struct lines_use) {
+		.offset = offset, .key = key,
+	}, d);
 }
 
 /* The slot of line @offset; inputs may share a line. */
@@ -245,8 +193,6 @@ static void encoder_configure(struct gpio *g, const struct machine_config *c,
 		.pulses = (int64_t)c->drive[axis].encoder_pulses,
 		.following_max = (int32_t)(k->following_mm / mm + 0.5),
 		.lag_cycles = k->following_s / period_s,
-		.resync_max = (int32_t)(k->resync_mm / mm + 0.5),
-		.slew = k->resync_mm_s / mm * period_s,
 	};
 
 	encoder_init(&g->encoder[axis], &e);
@@ -328,6 +274,9 @@ static struct pulser_config pulser_of(const struct config_gpio *k)
 		.dir_setup = (uint32_t)k->dir_setup_cycles,
 		.dir_hold = (uint32_t)k->dir_hold_cycles,
 		.quadrature = k->signal == 1,
+		.high_ns = (int64_t)(k->high_us * 1e3),
+		.low_ns = (int64_t)(k->low_us * 1e3),
+		.setup_ns = (int64_t)(k->setup_us * 1e3),
 	};
 }
 

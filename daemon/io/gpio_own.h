@@ -56,7 +56,8 @@ struct gpio {
 	struct chip chip[NCHIPS];
 	int nchips;
 	struct place at[CONFIG_NLINES];
-	struct pulser pulser;		/* without an edge thread */
+	struct pulser pulser;		/* without an edge thread: */
+	int64_t changed_ns;		/* its levels are these since */
 	struct edges *edges;		/* NULL: a line changes once a period */
 	struct edges_told told;
 	int32_t shift[IO_NAXES];	/* its pulses less the thread's */
@@ -80,7 +81,9 @@ struct gpio {
 	uint32_t encoders;		/* a bit per axis that has one */
 	struct encoder encoder[IO_NAXES];
 	struct quadrature quadrature[IO_NAXES];
-	int32_t extra[IO_NAXES];	/* pulses put out once more */
+	bool wanted;			/* the axes are to have power */
+	bool joined;			/* they go where the cycle says; before,
+					 * it says where they stand */
 	uint32_t unplaced;		/* for the next read */
 	_Atomic uint32_t tell[GPIO_NTELLS];	/* a bit per axis */
 	bool has_power;			/* lines that switch it */
@@ -121,7 +124,7 @@ int32_t gpio_put(const struct gpio *g, int i);
 /** gpio_axes_read() - read encoders; fill what @in says of the axes. */
 void gpio_axes_read(struct gpio *g, struct io_inputs *in);
 
-/** gpio_axes_write() - update g->extra. Return: lines that are to be on. */
+/** gpio_axes_write() - Return: lines that are to be on. */
 uint64_t gpio_axes_write(struct gpio *g, const struct io_outputs *out);
 
 /** gpio_axes_counted() - the count of pulses was @before and is another now. */

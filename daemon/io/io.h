@@ -52,6 +52,13 @@ struct io_plc {
 	double axes_c;			/* temperature of axes; 0: unknown */
 };
 
+/* What a generator says of what it was asked for. */
+struct io_generator {
+	uint32_t in_force;		/* io_outputs.asked that is; counts if
+					 * it can tell */
+	bool trouble;			/* until a reset */
+};
+
 /* What the machine says, once a period. */
 struct io_inputs {
 	double gap_v;			/* mean voltage over the last period */
@@ -78,9 +85,16 @@ struct io_inputs {
 	bool starting;			/* not up yet: nothing can begin */
 	uint32_t unplaced;		/* bit per axis: it lost its place in
 					 * this period */
-	bool axes_off;			/* not under power, or not yet on their
-					 * places: no motion can begin */
+	bool powerless;			/* an axis cannot have power now: no
+					 * motion may be asked for */
+	bool axes_off;			/* not under power: no motion can begin.
+					 * Targets are not followed, and where
+					 * these end, the axes stand ... */
+	int32_t stands_at[IO_NAXES];	/* ... here: pulses */
+	int32_t ran_on[IO_NAXES];	/* pulses that they may have run on by
+					 * themselves when they were stopped */
 	struct io_plc plc;
+	struct io_generator generator;
 	int32_t actual[IO_NAXES];	/* pulses, measured or last written */
 };
 
@@ -102,6 +116,7 @@ struct io_outputs {
 	double pulse[INTERP_NGENERATOR];	/* asked of the generator, by
 					 * enum interp_tech_id; NAN: its own
 					 * setting */
+	uint32_t asked;			/* another number: pulse has changed */
 	double off_path_mm;		/* way that an escape has led away from
 					 * the path; 0: on the path */
 };

@@ -107,6 +107,27 @@ static void fall(struct pulser *p)
 	p->hold = p->c.dir_hold;
 }
 
+int64_t pulser_level_ns(const struct pulser *p)
+{
+	switch (p->phase) {
+	case PULSER_SETUP:
+		return p->c.setup_ns;
+	case PULSER_HIGH:
+		return p->c.high_ns;
+	case PULSER_LOW:
+		return p->c.quadrature ? p->c.high_ns : p->c.low_ns;
+	default:
+		return 0;
+	}
+}
+
+void pulser_wait(struct pulser *p, const int32_t *target)
+{
+	uint32_t down;
+
+	p->behind = wanting(p, target, &down) != 0;
+}
+
 void pulser_period(struct pulser *p, const int32_t *target)
 {
 	uint32_t down;

@@ -14,7 +14,10 @@
  * In quadrature the two lines of an axis are A and B. A quarter turn is one
  * pulse, and A leads B in the positive direction.
  *
- * Units: times in periods. Threads: RT-safe.
+ * A period may be shorter than it should be, because the one before was late.
+ * So whoever calls this asks pulser_level_ns() first, and waits.
+ *
+ * Units: times in periods, ns. Threads: RT-safe.
  */
 #ifndef IO_PULSER_H
 #define IO_PULSER_H
@@ -25,6 +28,8 @@ struct pulser_config {
 	uint32_t high, low;		/* of a step; in quadrature, high is */
 	uint32_t dir_setup, dir_hold;	/* the least between two edges */
 	bool quadrature;
+	int64_t high_ns, low_ns, setup_ns;	/* at least, whatever a period
+					 * takes */
 };
 
 enum pulser_phase {
@@ -63,6 +68,12 @@ void pulser_period(struct pulser *p, const int32_t *target);
  * Whoever gives none while it is true is never more than one point ahead.
  */
 bool pulser_busy(const struct pulser *p);
+
+/** pulser_level_ns() - the present levels must last at least this long. */
+int64_t pulser_level_ns(const struct pulser *p);
+
+/** pulser_wait() - one period in which the levels stay as they are. */
+void pulser_wait(struct pulser *p, const int32_t *target);
 
 /** pulser_periods() - between two pulses of one direction, at the least. */
 uint32_t pulser_periods(const struct pulser_config *c);

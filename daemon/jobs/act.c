@@ -10,29 +10,9 @@
 #include "verb.h"
 
 #include <errno.h>
-#include <sodium.h>
 #include <stdio.h>
 #include <string.h>
 #include <sysexits.h>
-
-static uint64_t act_id(const struct jobs_lcm_command *c)
-{
-	crypto_generichash_state h;
-	unsigned char out[crypto_generichash_BYTES_MIN];
-	uint64_t id;
-
-	crypto_generichash_init(&h, NULL, 0, sizeof(out));
-	crypto_generichash_update(&h, c->key, SEAL_KEY_BYTES);
-	crypto_generichash_update(&h, (const unsigned char *)&c->seq,
-				  sizeof(c->seq));
-	crypto_generichash_update(&h, (const unsigned char *)c->client,
-				  strlen(c->client));
-	crypto_generichash_final(&h, out, sizeof(out));
-	memcpy(&id, out, sizeof(id));
-	/* SQLite stores signed 64-bit numbers; 0 means "no id". */
-	id &= INT64_MAX;
-	return id ? id : 1;
-}
 
 int act_commit(struct jobs *j)
 {
@@ -134,7 +114,7 @@ void act_take(struct jobs *j, const struct verb *v,
 	struct jobs_lcm_command own = *c;
 	struct store_act a;
 
-	own.act = act_id(c);
+	own.act = seal_act_id(c->key, c->client, c->seq);
 	if (store_act_find(j->store, own.act, &a) < 0)
 		act_begin(j, v, &own);
 	else if (a.answered)

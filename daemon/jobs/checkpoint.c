@@ -6,6 +6,8 @@
 
 #include "clocks.h"
 #include "jobs_log.h"
+#include "regular.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -117,19 +119,16 @@ static void *writer(void *arg)
 	return NULL;
 }
 
-static int thread_start(struct checkpoint_file *f)
+static int writer_start(struct checkpoint_file *f)
 {
-	sigset_t all, old;
 	int err;
 
 	pthread_mutex_init(&f->lock, NULL);
 	pthread_cond_init(&f->wake, NULL);
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &old);
-	err = pthread_create(&f->thread, NULL, writer, f);
-	pthread_sigmask(SIG_SETMASK, &old, NULL);
+	err = thread_start(&f->thread, &(struct thread) {
+		.name = "jobs-checkpoint", .run = writer, .arg = f });
 	f->running = err == 0;
-	return -err;
+	return err;
 }
 
 /* -- The file ------------------------------------------------------------- */
@@ -161,7 +160,7 @@ static int file_make(int fd)
 static bool takes_sectors(const char *path)
 {
 	_Alignas(CHECKPOINT_BLOCK) static uint8_t sector[CHECKPOINT_SECTOR];
-	const int fd = open(path, O_RDONLY | O_DIRECT | O_CLOEXEC);
+	const int fd = regular_open(path, O_RDONLY | O_DIRECT, 0);
 	bool takes = false;
 
 	if (fd >= 0) {
@@ -177,7 +176,7 @@ static void look_only(const char *path, const char *machine,
 		      struct checkpoint *ret)
 {
 	_Alignas(CHECKPOINT_BLOCK) static union checkpoint_block block[4];
-	const int fd = open(path, O_RDONLY | O_CLOEXEC);
+	const int fd = regular_open(path, O_RDONLY, 0);
 	struct checkpoint_head head;
 
 	if (fd < 0)
@@ -189,18 +188,18 @@ static void look_only(const char *path, const char *machine,
 
 static int file_open(struct checkpoint_file *f, const char *path)
 {
-	const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+	const int fd = regular_open(path, O_RDWR | O_CREAT, 0600);
 	int err;
 
 	if (fd < 0)
-		return -errno;
+		return fd;
 	/* Who may read a file may lock it.  A file of an earlier version may be
 	 * open to the group. */
 	err = fchmod(fd, 0600) < 0 ? -errno : file_make(fd);
 	f->direct = takes_sectors(path);
 	if (err == 0 && f->direct) {
-		f->fd = open(path, O_RDWR | O_DIRECT | O_CLOEXEC);
-		err = f->fd < 0 ? -errno : 0;
+		f->fd = regular_open(path, O_RDWR | O_DIRECT, 0);
+		err = f->fd < 0 ? f->fd : 0;
 		close(fd);
 	} else {
 		f->fd = fd;
@@ -233,7 +232,7 @@ int checkpoint_open(struct checkpoint_file **ret, const char *dir,
 		checkpoint_choose(block, machine, ret_last, &head);
 		f->sequence = head.sequence;
 		f->count = head.count;
-		err = thread_start(f);
+		err = writer_start(f);
 	}
 	if (err < 0) {
 		look_only(path, machine, ret_last);

@@ -3,6 +3,7 @@
 #include "compiler.h"
 #include "both.h"
 #include "compiling.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <sodium.h>
@@ -402,7 +403,9 @@ int compiler_start(struct compiler **ret, sd_event *event,
 	err = c->fd < 0 ? -errno :
 	      sd_event_add_io(event, &c->source, c->fd, EPOLLIN, on_done, c);
 	if (err >= 0)
-		err = -both_start(&c->thread, compiler_main, c);
+		err = thread_start(&c->thread, &(struct thread) {
+			.name = "jobs-compile", .run = compiler_main, .arg = c,
+		});
 	if (err < 0) {
 		compiler_free(c);
 		return err;

@@ -39,7 +39,7 @@ void interrupt_init(struct jobs *j)
 {
 	struct store_job job;
 
-	j->elsewhere |= (uint32_t)store_number(j->store, "elsewhere", 0);
+	j->unseen |= (uint32_t)store_number(j->store, "elsewhere", 0);
 	j->interrupted[0] = '\0';
 	if (store_interrupted(j->store, &job) == 0)
 		snprintf(j->interrupted, sizeof(j->interrupted), "%s", job.id);
@@ -74,17 +74,32 @@ static uint32_t unhomeable(const struct jobs *j)
 	return axes & j->config->axes.present;
 }
 
-static void note_elsewhere(struct jobs *j, uint32_t axes)
+static void set_unseen(struct jobs *j, uint32_t what)
 {
-	if (axes == j->elsewhere)
+	if (what == j->unseen)
 		return;
-	j->elsewhere = axes;
-	store_set_number(j->store, "elsewhere", axes);
+	j->unseen = what;
+	store_set_number(j->store, "elsewhere", what);
+}
+
+static void note_unseen(struct jobs *j, uint32_t axes)
+{
+	set_unseen(j, axes | j->unseen);
 }
 
 void interrupt_answered(struct jobs *j)
 {
-	note_elsewhere(j, 0);
+	set_unseen(j, 0);
+}
+
+const char *interrupt_unseen(const struct jobs *j)
+{
+	if (j->unseen & STORE_UNSEEN)
+		return "the store was damaged or gone; see what is left of "
+		       "work offsets, electrodes and queue, then edmctl start";
+	return j->unseen ? "an axis that cannot be homed was last seen at "
+	       "another place than is shown; edmctl status names it; see where "
+	       "it stands, then edmctl start" : NULL;
 }
 
 /* Did this edmd take up the places of the one before?  After a power cut the
@@ -124,7 +139,7 @@ void interrupt_attach(struct jobs *j)
 	}
 	if (!axes)
 		return;
-	note_elsewhere(j, axes | j->elsewhere);
+	note_unseen(j, axes);
 	queue_wait(j);
 	jobs_note(j, &(struct jobs_note) { .kind = "waits" },
 		  "edmd was started anew, and nothing measures where the axes "
@@ -140,7 +155,7 @@ static void keep(struct jobs *j, const struct checkpoint *c)
 	const struct shm_snapshot *s = &a.base.snap;
 	char reason[320], when[32];
 
-	note_elsewhere(j, unhomeable(j));
+	note_unseen(j, unhomeable(j));
 	again_interrupted(j, j->queue.job.n, &c->base, &a);
 	again_write(j, j->queue.job.n, &a);
 	take_sums(&j->queue, &a.base);
@@ -170,7 +185,7 @@ static void keep_before(struct jobs *j)
 	snprintf(reason, sizeof(reason), "interrupted again, and no checkpoint "
 		 "of what was done since the resume is left; before it, it was "
 		 "cut to %.3f mm", a.base.snap.far_mm);
-	note_elsewhere(j, unhomeable(j));
+	note_unseen(j, unhomeable(j));
 	queue_end(j, JOB_INTERRUPTED, reason);
 	interrupt_init(j);
 }
@@ -199,7 +214,7 @@ void interrupt_take(struct jobs *j)
 const char *interrupt_lost(const struct jobs *j)
 {
 	static char letters[INTERP_NAXES + 1];
-	const uint32_t lost = j->link.snap.unhomed | j->elsewhere |
+	const uint32_t lost = j->link.snap.unhomed | j->unseen |
 			      (*j->interrupted ? unhomeable(j) : 0);
 
 	return jobs_axes(lost & j->config->axes.present, letters);

@@ -16,10 +16,11 @@
 
 struct jobs;
 
-/* Why nothing begins while struct jobs has axes that are `elsewhere`. */
-#define INTERRUPT_ELSEWHERE \
-	"an axis that cannot be homed was last seen at another place than is " \
-	"shown; edmctl status names it; see where it stands, then edmctl start"
+/**
+ * interrupt_unseen() - why nothing begins until a person has seen something:
+ * NULL, or what to see.
+ */
+const char *interrupt_unseen(const struct jobs *j);
 
 /**
  * checkpoint_tick() - write a checkpoint if one is due; to be called every 20
@@ -48,7 +49,7 @@ void interrupt_take(struct jobs *j);
  */
 void interrupt_attach(struct jobs *j);
 
-/** interrupt_answered() - a person has seen where the machine stands. */
+/** interrupt_answered() - a person has seen what is `unseen`. */
 void interrupt_answered(struct jobs *j);
 
 /** interrupt_lost() - the letters of the axes whose places are not certain. */

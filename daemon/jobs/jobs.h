@@ -61,10 +61,11 @@ struct jobs {
 	int checkpoint_err;		/* of the last try */
 	struct checkpoint last;		/* as it was found at the start */
 	char interrupted[64];		/* id of the job that waits; or "" */
-	uint32_t elsewhere;		/* axes that cannot be homed and were
+	uint32_t unseen;		/* axes that cannot be homed and were
 					 * last seen at another place than
-					 * edmd shows; a start or a resume
-					 * answers for them */
+					 * edmd shows, and STORE_UNSEEN; a
+					 * start or a resume answers for
+					 * them */
 	crypto_hash_sha256_state files;	/* files.h */
 	uint8_t config_hash[32];	/* files_hash() for the job that is
 					 * loaded */
@@ -117,6 +118,9 @@ void status_guest(void *jobs);
 
 /** verbs_take() - take a COMMAND; called by lcm.c. */
 void verbs_take(void *jobs, const struct jobs_lcm_command *c);
+
+/** verbs_want() - what a verb wants; called by lcm.c. */
+enum trust_want verbs_want(const char *verb);
 
 /** submit_take() - take a JOB chunk; called by lcm.c. */
 void submit_take(void *jobs, const struct jobs_lcm_chunk *c);

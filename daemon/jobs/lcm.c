@@ -44,6 +44,7 @@ struct jobs_lcm {
 struct origin {
 	enum trust_cause cause;
 	const struct trust_packet *packet;
+	bool here;		/* it came by the socket of this host */
 };
 
 /* LCM declares strings as char *, but only reads them. */
@@ -135,8 +136,9 @@ static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
 /* Is the packet signed with a known key, for the present time, and new?  If
  * not, say so. */
 static bool is_taken(struct jobs_lcm *w, const struct origin *o,
-		     const char *client, int64_t seq)
+		     const struct trust_client *from, int64_t seq)
 {
+	const char *client = from->name;
 	struct jobs_lcm_ack to = {
 		.key = o->packet->seal.key, .client = client, .seq = seq,
 		.code = EX_PROTOCOL,
@@ -149,14 +151,15 @@ static bool is_taken(struct jobs_lcm *w, const struct origin *o,
 	char who[KEYFILE_NAME_MAX];
 	bool is_guest;
 
-	if (w->local && n < LOCAL_CLIENT_MAX)
-		local_is(w->local, &(struct local_who) { to.key, client });
 	if (cause == TRUST_FINE && (n == 0 || n >= TRUST_CLIENT_MAX)) {
 		jobs_lcm_ack(w, &to);
 		return false;
 	}
 	if (cause == TRUST_FINE)
-		cause = trust_fresh(w->trust, o->packet, client, now);
+		cause = trust_fresh(w->trust, o->packet, from, now);
+	/* Who repeats a packet of another is not the other. */
+	if (o->here && n < LOCAL_CLIENT_MAX && cause != TRUST_REPLAY)
+		local_is(w->local, &(struct local_who) { to.key, client });
 	if (cause == TRUST_FINE)
 		return true;
 	trust_who(o->packet, who);
@@ -188,7 +191,9 @@ static bool on_command(struct jobs_lcm *w, const struct origin *o)
 		.by = o->packet->key, .from = o->packet->from,
 		.signed_us = trust_signed_us(w->trust, s),
 	};
-	if (is_taken(w, o, m.client, m.seq))
+	if (is_taken(w, o, &(struct trust_client) {
+			.name = m.client, .want = w->handlers.want(m.verb) },
+		     m.seq))
 		w->handlers.command(w->handlers.arg, &c);
 	edm_command_t_decode_cleanup(&m);
 	return true;
@@ -241,18 +246,20 @@ static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 		.signed_us = trust_signed_us(w->trust, s),
 		.by = o->packet->key, .from = o->packet->from,
 	};
-	if (is_taken(w, o, m.client, m.seq))
+	if (is_taken(w, o, &(struct trust_client) {
+			.name = m.client, .want = TRUST_ACTS }, m.seq))
 		w->handlers.chunk(w->handlers.arg, &c);
 	edm_job_chunk_t_decode_cleanup(&m);
 	return true;
 }
 
-static void on_packet(struct jobs_lcm *w, const struct udpm_packet *u)
+static void on_packet(struct jobs_lcm *w, const struct udpm_packet *u,
+		      bool here)
 {
 	const bool command = strcmp(u->channel, w->command) == 0;
 	const int64_t now = clock_us(CLOCK_MONOTONIC);
 	struct trust_packet packet = { .channel = u->channel, .from = u->from };
-	struct origin o = { .packet = &packet };
+	struct origin o = { .packet = &packet, .here = here };
 	char who[KEYFILE_NAME_MAX] = "no key";
 
 	/* It is for another machine, or it is something that only services
@@ -377,7 +384,7 @@ static void handle_net(struct jobs_lcm *w)
 	uint64_t strange;
 
 	if (udpm_take(w->net, &packet))
-		on_packet(w, &packet);
+		on_packet(w, &packet, false);
 	strange = udpm_strange(w->net, &from);
 	for (; w->strange < strange; w->strange++)
 		trust_refuse(w->trust, TRUST_STRANGE, "nobody", from,
@@ -389,7 +396,7 @@ void jobs_lcm_handle(struct jobs_lcm *w)
 	struct udpm_packet packet;
 
 	if (w->local && local_take(w->local, &packet))
-		on_packet(w, &packet);
+		on_packet(w, &packet, true);
 	if (w->net)
 		handle_net(w);
 }

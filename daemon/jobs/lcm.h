@@ -93,6 +93,8 @@ struct jobs_lcm_status {
 struct jobs_lcm_handlers {
 	void (*command)(void *arg, const struct jobs_lcm_command *c);
 	void (*chunk)(void *arg, const struct jobs_lcm_chunk *c);
+	/* What a verb wants; of one that is not known: TRUST_ASKS. */
+	enum trust_want (*want)(const char *verb);
 	/* A client with a known key came for the first time, and has been told
 	 * the boot number.  What is sent now, it believes. */
 	void (*guest)(void *arg);

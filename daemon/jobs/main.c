@@ -301,6 +301,8 @@ static int open_store(struct jobs *j, const char *dir)
 			  j->machine);
 		return EX_CONFIG;
 	}
+	if (err == -ELOOP)		/* store_open() has said which file */
+		return EX_CONFIG;
 	log_error("store: %s: %s; a folder that can be written, by --store or "
 		  "[jobs] store", dir, strerror(-err));
 	return EX_CANTCREAT;
@@ -331,6 +333,7 @@ static int open_lcm(struct jobs *j)
 {
 	struct jobs_lcm_handlers h = {
 		.command = verbs_take, .chunk = submit_take,
+		.want = verbs_want,
 		.guest = status_guest,
 		.trust = &j->trust, .arg = j,
 	};

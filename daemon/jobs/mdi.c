@@ -47,8 +47,8 @@ const char *mdi_why_not(const struct jobs *j)
 		       "away";
 	if (j->queue.behind > 0 || j->queue.compile)
 		return "jobs wait in the queue; edmctl remove takes them out";
-	if (j->elsewhere)
-		return INTERRUPT_ELSEWHERE;
+	if (j->unseen)
+		return interrupt_unseen(j);
 	if (j->link.snap.state != SHM_IDLE || j->link.snap.unplaced)
 		return "the machine is not idle; wait until it stands";
 	return NULL;

@@ -3,6 +3,7 @@
 #include "again.h"
 #include "faults.h"
 #include "hunting.h"
+#include "process.h"
 #include "interrupt.h"
 #include "jobs.h"
 
@@ -33,8 +34,8 @@ void queue_recount(struct jobs *j)
 
 static void set_waiting(struct jobs *j, bool waiting)
 {
-	/* Nothing begins until a person has seen where the axes stand. */
-	waiting = waiting || j->elsewhere;
+	/* Nothing begins until a person has seen what is not certain. */
+	waiting = waiting || j->unseen;
 	if (j->queue.waiting == waiting)
 		return;
 	j->queue.waiting = waiting;
@@ -283,6 +284,21 @@ static void follow_hunting(struct jobs *j, const struct shm_event *e)
 	}, "job %s: " HUNTING_WHAT "; " HUNTING_ADVICE, q->job.name, e->code);
 }
 
+/* A person is to turn knobs. */
+static void follow_hand(struct jobs *j, const struct shm_event *e)
+{
+	struct queue *q = &j->queue;
+	char names[96];
+
+	if (!q->job.n || e->program != q->job.n)
+		return;
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "warning", .job = q->job.id, .outcome = "by-hand",
+		.place_mm = e->place_mm,
+	}, "job %s: " PROCESS_HAND, q->job.name,
+		  process_names(e->id, names, sizeof(names)));
+}
+
 /* A service that has come reads all of edmd's events again.  Most are known by
  * their time in the store; these are by their number. */
 static bool is_old(struct jobs *j)
@@ -307,6 +323,8 @@ void queue_event(struct jobs *j, const struct shm_event *e)
 	tally_event(j, e, link_is_repeat(&j->link));
 	if (e->kind == SHM_EV_HUNTING && !is_old(j))
 		follow_hunting(j, e);
+	if (e->kind == SHM_EV_HAND && !is_old(j))
+		follow_hand(j, e);
 	if (e->kind == SHM_EV_SELECT && !is_old(j))
 		follow_select(j, (uint32_t)e->code);
 	queue_ended_event(q, e);

@@ -104,11 +104,16 @@ enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY, STORE_ALARMS,
 /** store_state_name() - "queued", ... */
 const char *store_state_name(enum job_state s);
 
+/* Of the number "elsewhere": a store was mended, and nobody has said yet that
+ * its loss is known.  The other bits are axes. */
+#define STORE_UNSEEN	(UINT32_C(1) << 31)
+
 /**
  * store_open() - open or make the database.
  *
  * A disk that is full, read-only or fails is no error here: see store_why().
- * Return: 0; -EALREADY if another service has it; -EPROTO if a newer version
+ * Return: 0; -EALREADY if another service has it; -ELOOP if one of its files is
+ * a link or no regular file, which is then logged; -EPROTO if a newer version
  * made it; -errno if @dir cannot be used.
  */
 int store_open(struct store **ret, const char *dir, const char *machine);

@@ -7,8 +7,10 @@
  * same order as a file that the first edmd-jobs made.
  */
 #include "store_sql.h"
+#include "store_text.h"
 
 #include "jobs_log.h"
+#include "regular.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -202,7 +204,23 @@ static int step_up(sqlite3 *db, int64_t from)
 	return err;
 }
 
-static int bring_up(sqlite3 *db)
+/* A new database without tables is made here, and first of all.  If the files
+ * that a service makes after it are there already, there was another one. */
+static bool is_left_alone(const struct store *s)
+{
+	static const char *const later[] = { "place", "key", "machine-key" };
+	char path[600];
+
+	for (size_t i = 0; i < sizeof(later) / sizeof(later[0]); i++) {
+		snprintf(path, sizeof(path), "%.*s%s",
+			 (int)strlen(s->path) - 2, s->path, later[i]);
+		if (access(path, F_OK) == 0)
+			return true;
+	}
+	return store_text_bytes(s) > 0;
+}
+
+static int bring_up(struct store *s, sqlite3 *db)
 {
 	int64_t version, tables;
 	int err = ask_number(db, "PRAGMA user_version", &version);
@@ -216,6 +234,9 @@ static int bring_up(sqlite3 *db)
 		return -EPROTO;
 	if (version == VERSION)
 		return 0;
+	s->gone = tables == 0 && is_left_alone(s);
+	if (s->gone)
+		return -EILSEQ;
 	if (tables > 0)
 		log_notice("store: bringing it from version %d to %d",
 			   (int)version, VERSION);
@@ -249,9 +270,9 @@ static int try_file(const struct store *s, int64_t bytes, bool sync)
 	int fd, err = 0;
 
 	snprintf(path, sizeof(path), "%s.probe", s->path);
-	fd = open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+	fd = regular_open(path, O_RDWR | O_CREAT | O_TRUNC, 0600);
 	if (fd < 0)
-		return -errno;
+		return fd;
 	if (write(fd, path, sizeof(path)) < 0 || (sync && fsync(fd) < 0))
 		err = -errno;
 	if (err == 0 && bytes > 0)
@@ -292,7 +313,7 @@ static int open_once(struct store *s, sqlite3 **ret)
 	if (err == 0 && (!s->in_memory || s->err == -EILSEQ))
 		err = check(s, db);
 	if (err == 0)
-		err = bring_up(db);
+		err = bring_up(s, db);
 	if (err == 0)
 		err = store_count_begin(db);
 	if (err < 0) {

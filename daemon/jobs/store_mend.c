@@ -146,6 +146,8 @@ static const char settle[] =
 	" (SELECT 1 FROM sqlite_sequence WHERE name='job');"
 	"UPDATE sqlite_sequence SET seq=seq+1000 WHERE name='job';"
 	"INSERT OR REPLACE INTO number VALUES('waiting', 1);"
+	"INSERT OR REPLACE INTO number VALUES('elsewhere', 0x80000000 | "
+	"ifnull((SELECT value FROM number WHERE key='elsewhere'), 0));"
 	"DELETE FROM text WHERE n NOT IN (SELECT n FROM job);"
 	"UPDATE job SET state='stopped', loaded=0, ended_us=unixepoch()*1000000,"
 	" reason="
@@ -188,6 +190,22 @@ static void name_aside(const struct store *s, char *to, size_t size)
 	snprintf(to, size, "%s.damaged-%s", s->path, when);
 }
 
+static void tell(struct store *s, int64_t jobs, const char *aside)
+{
+	if (s->gone)
+		snprintf(s->told, sizeof(s->told),
+			 "%.240s is gone or empty, beside its other files: "
+			 "queue, history, work offsets, electrodes and keys are "
+			 "lost, and nothing starts until start; if there is a "
+			 "copy, end edmd-jobs and put it back", s->path);
+	else
+		snprintf(s->told, sizeof(s->told),
+			 "the database was damaged; %lld jobs were recovered, "
+			 "and nothing starts until start; what was there is "
+			 "kept as %.200s", (long long)jobs, aside);
+	log_error("store: %s", s->told);
+}
+
 int store_mend(struct store *s)
 {
 	char aside[560], fresh[560];
@@ -213,10 +231,6 @@ int store_mend(struct store *s)
 	remove_with(s->path, "-shm");
 	if (rename(fresh, s->path) < 0)
 		return -errno;
-	snprintf(s->told, sizeof(s->told),
-		 "the database was damaged; %lld jobs were recovered, and "
-		 "nothing starts until start; what was there is kept as %.200s",
-		 (long long)n, aside);
-	log_error("store: %s", s->told);
+	tell(s, n, aside);
 	return 0;
 }

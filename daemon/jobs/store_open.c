@@ -4,6 +4,7 @@
 #include "store_text.h"
 
 #include "jobs_log.h"
+#include "regular.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -31,21 +32,36 @@ static bool is_of_disk(int err)
  * the group read it.  But who may read a file may lock it, and so could keep
  * the service from starting, or from writing a job.
  */
+static const struct {
+	const char *suffix;
+	bool alone;			/* only this user may open it */
+} files[] = {
+	{ "lock", true }, { "db", true }, { "db-wal", true },
+	{ "db-shm", true }, { "db-journal", true }, { "place", false },
+	{ "key", false }, { "machine-key", false },
+};
+
 static int folder_make(const struct store *s, const char *machine)
 {
-	static const char *const old[] = { "lock", "db", "db-wal", "db-shm" };
 	char path[600];
 
 	if (mkdir(s->dir, 0750) == 0)
 		chmod(s->dir, 0750);
 	else if (errno != EEXIST)
 		return -errno;
-	/* If a file does not belong to us or cannot be changed, opening it will
-	 * report that. */
-	for (size_t i = 0; i < sizeof(old) / sizeof(old[0]); i++) {
+	for (size_t i = 0; i < sizeof(files) / sizeof(files[0]); i++) {
 		snprintf(path, sizeof(path), "%s/%s.%s", s->dir, machine,
-			 old[i]);
-		chmod(path, 0600);
+			 files[i].suffix);
+		if (regular_check(path) == -ELOOP) {
+			log_error("store: %s is a symbolic link, or no regular "
+				  "file; put the file itself there, or move it "
+				  "away", path);
+			return -ELOOP;
+		}
+		/* If a file does not belong to us or cannot be changed,
+		 * opening it will report that. */
+		if (files[i].alone)
+			chmod(path, 0600);
 	}
 	return 0;
 }
@@ -59,11 +75,10 @@ static int lock_take(struct store *s, const char *machine)
 	if (err < 0)
 		return err;
 	snprintf(path, sizeof(path), "%s/%s.lock", s->dir, machine);
-	s->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-	if (s->lock < 0)
-		err = -errno;
+	s->lock = regular_open(path, O_RDWR | O_CREAT, 0600);
+	err = s->lock < 0 ? s->lock : 0;
 	if (is_of_disk(err))
-		s->lock = open(path, O_RDONLY | O_CLOEXEC);
+		s->lock = regular_open(path, O_RDONLY, 0);
 	if (s->lock < 0)
 		return is_of_disk(err) ? 0 : err;
 	if (flock(s->lock, LOCK_EX | LOCK_NB) < 0)

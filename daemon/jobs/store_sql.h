@@ -91,6 +91,8 @@ struct store {
 	uint64_t spared;		/* from the list, but not from the
 					 * transaction */
 	int64_t retained_us;
+	bool gone;			/* at the start it was empty, beside
+					 * its other files */
 	char told[512];			/* what was mended at the start */
 };
 

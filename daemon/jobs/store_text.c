@@ -2,6 +2,7 @@
 /* store_text.c - long texts of jobs, in files beside the database */
 #include "store_text.h"
 
+#include "regular.h"
 #include "store_sql.h"
 #include "upload.h"
 
@@ -102,7 +103,7 @@ static int read_all(int fd, char **ret, size_t *ret_bytes)
 
 	if (fstat(fd, &st) < 0)
 		return -errno;
-	if (!S_ISREG(st.st_mode) || st.st_size > UPLOAD_BYTES_MAX)
+	if (st.st_size > UPLOAD_BYTES_MAX)
 		return -EILSEQ;
 	text = malloc((size_t)st.st_size + 1);
 	if (!text)
@@ -138,12 +139,11 @@ static bool is_whole(const char *path, const char *text, size_t bytes)
 
 int store_text_read(const char *path, char **ret, size_t *ret_bytes)
 {
-	const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW |
-			    O_NONBLOCK);
+	const int fd = regular_open(path, O_RDONLY, 0);
 	int err;
 
 	if (fd < 0)
-		return errno == ENOENT || errno == ELOOP ? -EILSEQ : -errno;
+		return fd == -ENOENT || fd == -ELOOP ? -EILSEQ : fd;
 	err = read_all(fd, ret, ret_bytes);
 	close(fd);
 	return err;

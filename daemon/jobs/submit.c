@@ -11,6 +11,7 @@
 #include "again.h"
 #include "compiler.h"
 #include "entry.h"
+#include "interrupt.h"
 #include "jobs_log.h"
 #include "offset.h"
 #include "verb.h"
@@ -103,9 +104,8 @@ static const char *what_next(const struct jobs *j, bool hold)
 		return "a job before it waits for an electrode";
 	if (queue_unready(j))
 		return "an axis is not homed: it wants a home, then a start";
-	if (j->elsewhere)
-		return "an axis was last seen elsewhere: see where it stands, "
-		       "then start";
+	if (j->unseen)
+		return interrupt_unseen(j);
 	if (j->queue.waiting)
 		return "the queue waits for start";
 	if (hold)

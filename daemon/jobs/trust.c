@@ -234,29 +234,51 @@ static bool session_is_over(const struct trust_session *s, int64_t now)
 	return !s->client[0] || s->count < now - TRUST_OLD_US;
 }
 
-enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
-			     const char *client, int64_t now_us)
+/* Which of two is the better one to be given up; NULL: none yet. */
+static struct trust_session *session_room(struct trust_session *a,
+					  struct trust_session *b, int64_t now)
 {
-	int64_t now = clock_of(t, now_us);
-	struct trust_session *of = t->session[p->key - t->key], *room = NULL;
+	if (session_is_over(b, now))
+		return !a || !session_is_over(a, now) ? b : a;
+	if (b->acted || (a && (session_is_over(a, now) || a->count < b->count)))
+		return a;
+	return b;
+}
 
+/* Return: NULL: it is not there, and @ret_room may be had; or NULL too. */
+static struct trust_session *session_find(struct trust_session *of,
+					  const char *client, int64_t now,
+					  struct trust_session **ret_room)
+{
+	*ret_room = NULL;
 	for (int i = 0; i < TRUST_SESSIONS; i++) {
-		struct trust_session *s = &of[i];
-
-		if (strcmp(s->client, client) == 0) {
-			if (p->seal.count <= s->count)
-				return TRUST_REPLAY;
-			s->count = p->seal.count;
-			t->asked[p->key - t->key].n++;
-			return TRUST_FINE;
-		}
-		if (!room && session_is_over(s, now))
-			room = s;
+		if (strcmp(of[i].client, client) == 0)
+			return &of[i];
+		*ret_room = session_room(*ret_room, &of[i], now);
 	}
-	if (!room)
+	return NULL;
+}
+
+enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
+			     const struct trust_client *client, int64_t now_us)
+{
+	const int64_t now = clock_of(t, now_us);
+	struct trust_session *room, *s;
+
+	s = session_find(t->session[p->key - t->key], client->name, now, &room);
+	if (s && p->seal.count <= s->count)
+		return TRUST_REPLAY;
+	if (!s && !room && client->want == TRUST_ACTS)
 		return TRUST_CROWD;
-	room->count = p->seal.count;
-	snprintf(room->client, sizeof(room->client), "%s", client);
+	if (!s && room) {
+		s = room;
+		*s = (struct trust_session) { .acted = false };
+		snprintf(s->client, sizeof(s->client), "%s", client->name);
+	}
+	if (s) {
+		s->count = p->seal.count;
+		s->acted = s->acted || client->want != TRUST_ASKS;
+	}
 	t->asked[p->key - t->key].n++;
 	return TRUST_FINE;
 }

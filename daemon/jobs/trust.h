@@ -9,6 +9,11 @@
  * has to be remembered is bounded: a client that was silent for TRUST_OLD_US
  * can be forgotten, because its old packets are too old by then.
  *
+ * A client that only asked is forgotten when its room is wanted: a question
+ * that is heard twice is answered twice, and that is all.  An act that ends
+ * motion is taken without a session, if there is no room: edmd and the store
+ * know its id.
+ *
  * Who may only look must not keep the service from those who may stop the
  * machine. So each key has room of its own for its clients, and of a viewer's
  * packets only so many a second are looked at.
@@ -50,9 +55,13 @@ enum trust_cause {
 	TRUST_NCAUSES
 };
 
+/* What a packet wants, as far as its session is concerned. */
+enum trust_want { TRUST_ASKS, TRUST_ACTS, TRUST_ENDS };
+
 struct trust_session {
 	char client[TRUST_CLIENT_MAX];	/* "": free */
 	int64_t count;			/* of its last packet */
+	bool acted;			/* it did more than ask */
 };
 
 struct trust_refusals {
@@ -87,6 +96,11 @@ struct trust_packet {
 	bool answers;			/* one that is not taken is told why */
 };
 
+struct trust_client {
+	const char *name;
+	enum trust_want want;
+};
+
 /**
  * trust_init() - draw a new boot number; @machine and the keys are set already.
  */
@@ -111,9 +125,12 @@ enum trust_cause trust_look(struct trust *t, struct trust_packet *p,
 
 /**
  * trust_fresh() - is it the next packet of @client? TRUST_FINE, else why not.
+ *
+ * TRUST_CROWD is said only to acts that do not end motion, and only if so many
+ * clients have acted.
  */
 enum trust_cause trust_fresh(struct trust *t, const struct trust_packet *p,
-			     const char *client, int64_t now_us);
+			     const struct trust_client *client, int64_t now_us);
 
 /**
  * trust_signed_us() - when the client signed it, by our clock, as far as the

@@ -97,6 +97,9 @@ static const char *refusal(int code)
 		[SHM_LOCKED] = "nothing may move now: the door is open, the "
 			       "gap cannot be read, or the PLC is not there, "
 			       "holds, or has no permit",
+		[SHM_NO_POWER] = "an axis cannot have power: safe torque "
+				 "off, its supply or its enable input; "
+				 "repair that, then ask again",
 		[SHM_STILL_THERE] = "what caused the fault is still there; "
 				    "edmctl alarms says what clears it",
 	};
@@ -336,6 +339,24 @@ static void refuse_field(struct jobs *j, const struct jobs_lcm_command *c)
 	verbs_answer(j, c, EX_DATAERR, reason);
 }
 
+/* Does a value of the generator reach it?  Otherwise it is refused. */
+static bool reaches(struct jobs *j, const struct jobs_lcm_command *c,
+		    enum interp_tech_id id)
+{
+	struct interp_diag why;
+	struct interp_tech t;
+	char reason[420];
+
+	interp_tech_clear(&t);
+	t.v[id] = c->arg;
+	if (!interp_tech_value_ok(id, c->arg) ||
+	    config_generator_takes(j->config, &t, "set", &why) == 0)
+		return true;
+	snprintf(reason, sizeof(reason), "%s; %s", why.found, why.wanted);
+	verbs_answer(j, c, EX_DATAERR, reason);
+	return false;
+}
+
 /* NaN removes the set value; the condition's own value is valid again. */
 static void verb_set(struct jobs *j, const struct verb *v,
 		     const struct jobs_lcm_command *c)
@@ -349,6 +370,8 @@ static void verb_set(struct jobs *j, const struct verb *v,
 		return;
 	}
 	interp_tech_range((enum interp_tech_id)id, range, sizeof(range));
+	if (!reaches(j, c, (enum interp_tech_id)id))
+		return;
 	if (id == INTERP_TECH_JUMP_MM)
 		fits = config_jump_fits(j->config, c->arg, range,
 					sizeof(range));
@@ -553,7 +576,7 @@ static void start_nothing(struct jobs *j, const struct jobs_lcm_command *c)
 {
 	const char *why = queue_unready(j);
 
-	if (!j->elsewhere)
+	if (!j->unseen)
 		why = "no job in the queue; submit one";
 	if (why) {
 		verbs_answer(j, c, REFUSED, why);
@@ -561,8 +584,8 @@ static void start_nothing(struct jobs *j, const struct jobs_lcm_command *c)
 	}
 	interrupt_answered(j);
 	queue_go(j);
-	verbs_answer(j, c, 0, "the axes count as standing where they are "
-		     "shown; no job waits");
+	verbs_answer(j, c, 0, "what was not certain counts as seen, and the "
+		     "axes as standing where they are shown; no job waits");
 }
 
 static void verb_start(struct jobs *j, const struct verb *v,
@@ -672,6 +695,15 @@ static const struct verb *verb_find(const char *name)
 		if (strcmp(verbs[i].name, name) == 0)
 			return &verbs[i];
 	return NULL;
+}
+
+enum trust_want verbs_want(const char *verb)
+{
+	const struct verb *v = verb_find(verb);
+
+	return !v || v->kind == VERB_ASKS ? TRUST_ASKS :
+	       v->kind == VERB_ENDS && v->machine != VERB_OWN ? TRUST_ENDS :
+	       TRUST_ACTS;
 }
 
 static void refuse_role(struct jobs *j, const struct jobs_lcm_command *c,

@@ -48,8 +48,8 @@ static const char *why_loaded(const struct jobs *j)
 {
 	switch (j->queue.job.state) {
 	case JOB_READY:
-		if (j->elsewhere)
-			return INTERRUPT_ELSEWHERE;
+		if (j->unseen)
+			return interrupt_unseen(j);
 		return j->queue.job.hold || j->queue.waiting ?
 		       "it is ready; edmctl start begins it" : "";
 	case JOB_HELD:
@@ -95,8 +95,8 @@ const char *waits_why(const struct jobs *j, const struct store_job *job,
 	else if (is_waited_for(q, job))
 		snprintf(to, size, "job %s, %s, is before it and %s",
 			 q->job.id, q->job.name, does(q->job.state));
-	else if (j->elsewhere)
-		snprintf(to, size, "%s", INTERRUPT_ELSEWHERE);
+	else if (j->unseen)
+		snprintf(to, size, "%s", interrupt_unseen(j));
 	else if (q->waiting)
 		snprintf(to, size, "the queue waits, because a job ended early "
 			 "or edmd was started anew; edmctl start");

@@ -5,10 +5,10 @@
 #include "logger.h"
 
 #include "plain.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -180,20 +180,16 @@ static void *run(void *arg)
 	return NULL;
 }
 
-/* No signal is ever delivered to it. */
 int logger_start(void)
 {
-	sigset_t all, before;
 	int err;
 
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
 	pthread_mutex_lock(&line.lock);
-	err = pthread_create(&line.thread, NULL, run, NULL);
+	err = thread_start(&line.thread, &(struct thread) {
+		.name = "log", .run = run });
 	line.started = err == 0;
 	pthread_mutex_unlock(&line.lock);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	return -err;
+	return err;
 }
 
 /* A thread that hangs in a write() is left to the end of the process. */

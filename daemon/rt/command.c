@@ -16,6 +16,8 @@ static enum cycle_answer may_begin(const struct cycle *c)
 {
 	if (c->axes.starting)
 		return ANSWER_NOT_UP;
+	if (c->axes.powerless)
+		return ANSWER_NO_POWER;
 	return guard_forbids(c) ? ANSWER_LOCKED : ANSWER_DONE;
 }
 
@@ -49,8 +51,7 @@ static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 	c->turned_mm = 0;
 	c->arcing = (struct arcing) { .rung = ARCING_NONE };
 	gap_forget(c);
-	if (axes_want(c, true))
-		cycle_set_off(c);
+	axes_want(c, cycle_start, 0);
 	return ANSWER_DONE;
 }
 
@@ -88,6 +89,12 @@ static enum cycle_answer do_stop(struct cycle *c, double arg_mm)
 	return ANSWER_DONE;
 }
 
+static void go_back(struct cycle *c, double back_mm)
+{
+	c->hold.moving = true;
+	c->hold.to_mm = fmax(place_outer_mm(c), place_mm(c) - back_mm);
+}
+
 static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 {
 	enum cycle_answer answer;
@@ -104,10 +111,15 @@ static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 	if (answer != ANSWER_DONE)
 		return answer;
 	cycle_happen(c, EVENT_HOLD);
-	axes_want(c, false);
-	c->hold.moving = true;
-	c->hold.to_mm = fmax(place_outer_mm(c), place_mm(c) - arg_mm);
+	axes_want(c, go_back, arg_mm);
 	return ANSWER_DONE;
+}
+
+/* On its way back to the path the machine came to another place: there may be
+ * no such node any more, and then it stays. */
+static void go_to_node(struct cycle *c, double nodes)
+{
+	c->hold.moving = step_to(c, nodes, &c->hold.to_mm) == ANSWER_DONE;
 }
 
 static enum cycle_answer do_step(struct cycle *c, double arg_mm)
@@ -126,9 +138,7 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 		return answer;
 	if (c->manual.unplaced)
 		return ANSWER_NOT_HOMED;
-	axes_want(c, false);
-	c->hold.moving = true;
-	c->hold.to_mm = to_mm;
+	axes_want(c, go_to_node, arg_mm);
 	return ANSWER_DONE;
 }
 
@@ -210,7 +220,7 @@ static enum cycle_answer do_manual(struct cycle *c,
 	if (answer != ANSWER_DONE)
 		return answer;
 	cycle_enter(c, jog ? STATE_JOG : STATE_HOME);
-	axes_want(c, false);
+	axes_want(c, NULL, 0);
 	return ANSWER_DONE;
 }
 
@@ -224,7 +234,7 @@ static enum cycle_answer do_press(struct cycle *c,
 
 	if (begun) {
 		cycle_enter(c, STATE_JOG);
-		axes_want(c, false);
+		axes_want(c, NULL, 0);
 	}
 	return (enum cycle_answer)answer;
 }
@@ -258,6 +268,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->outcome = OUTCOME_NONE;
 	c->totals = (struct cycle_totals) { 0 };
 	c->far_mm = far_mm;
+	c->resync.sure_mm = interp_cursor_place_mm(at);
 	c->job.action_done = at->index;
 	c->flush = (struct flush) { .far_mm = far_mm };
 	c->job.dwelling = false;

@@ -24,6 +24,7 @@ void cycle_init(struct cycle *c, const struct cycle_config *config)
 		.plc_override = NAN,
 	};
 	io_pulse_own(&c->out);
+	asking_init(&c->asking);
 	memcpy(c->out.target, config->start, sizeof(c->out.target));
 }
 
@@ -89,6 +90,11 @@ static enum cycle_event look(struct cycle *c)
 {
 	const bool powered = state_duty[c->state].power;
 
+	if (asking_hand(c))
+		return EVENT_HOLD;
+	if (asking_waits(c))
+		return !escape_is_out(&c->escape) && walk_positions(c) ?
+		       EVENT_FREE : EVENT_NONE;
 	if (powered && c->sensed.is_short)
 		return EVENT_SHORT;
 	if (powered && !escape_is_out(&c->escape) && walk_positions(c))
@@ -230,15 +236,16 @@ static void sum_up(struct cycle *c, bool running)
 static bool may_spark(const struct cycle *c)
 {
 	return state_duty[c->state].power && !c->job.power_off &&
-	       c->fault.latched == 0 && !walk_positions(c);
+	       c->fault.latched == 0 && !walk_positions(c) &&
+	       c->asking.in_force;
 }
 
 /* Does a command move the axes?  Then their compensation may move them too. */
 static bool moves_by_will(const struct cycle *c)
 {
-	return !c->axes.awaited &&
+	return !axes_awaits(&c->axes) &&
 	       (state_duty[c->state].running || c->hold.moving ||
-		cycle_is_manual(c));
+		c->axes.phase == AXES_BACK || cycle_is_manual(c));
 }
 
 static void give(struct cycle *c, struct io_outputs *out)
@@ -267,7 +274,9 @@ static void give(struct cycle *c, struct io_outputs *out)
 	}, out->target);
 	for (int i = 0; i < INTERP_NAXES && c->contouring.on; i++)
 		out->target[i] += c->contouring.added[i];
-	out->pulse[INTERP_TECH_OFF_US] = arcing_off_us(c);
+	resync_apply(c, out->target);
+	memcpy(out->pulse, c->asking.now, sizeof(out->pulse));
+	out->asked = c->asking.version;
 	c->out.reset = false;
 }
 
@@ -282,17 +291,12 @@ static void go_manually(struct cycle *c, const struct io_inputs *in)
 /* The machine is held until the axes have power and stand on their places. */
 static bool may_move(struct cycle *c)
 {
-	enum axes_await a;
-
 	/* A jog or homing that ends before the axes have power needs none. */
-	if (c->axes.awaited && cycle_is_manual(c) && manual_ends(c))
+	if (axes_awaits(&c->axes) && cycle_is_manual(c) && manual_ends(c))
 		axes_forget(c);
-	a = axes_await(c);
-	if (a == AXES_START)
-		cycle_set_off(c);
-	if (c->axes.start)
+	if (c->axes.then == cycle_start)
 		c->totals.cycles++;
-	return a != AXES_AWAITED;
+	return axes_await(c);
 }
 
 /* Choose the state by the gap and the place, unless a guard has found a
@@ -345,5 +349,6 @@ void cycle_step(struct cycle *c, const struct io_inputs *in,
 	if (!c->overran)
 		c->overruns_in_row = 0;
 	c->overran = false;
+	asking_step(c, in);
 	give(c, out);
 }

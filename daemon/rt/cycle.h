@@ -21,6 +21,7 @@
 
 #include "interp/cursor.h"
 #include "gap/arcing.h"
+#include "gap/asking.h"
 #include "axes/axes.h"
 #include "axes/comp.h"
 #include "axes/contouring.h"
@@ -42,6 +43,7 @@
 #include "state.h"
 #include "path/probe.h"
 #include "path/progress.h"
+#include "path/resync.h"
 #include "verbs.h"
 
 /* How the last job ended. */
@@ -80,6 +82,8 @@ struct cycle_config {
 	uint64_t press_cycles;		/* VERB_PRESS_S, in real time */
 	struct comp_config comp;
 	struct contouring_config contouring;
+	struct resync_config resync;
+	struct asking_config asking;
 };
 
 /* The verbs of words/verbs.h: CYCLE_START and so on. */
@@ -116,6 +120,7 @@ enum cycle_answer {
 	ANSWER_NOT_UP,			/* the drives are not up yet */
 	ANSWER_LOCKED,			/* a guard or the PLC forbids it */
 	ANSWER_STILL_THERE,		/* reset: the cause is still there */
+	ANSWER_NO_POWER,		/* an axis cannot have power now */
 	CYCLE_NANSWERS
 };
 
@@ -217,11 +222,13 @@ struct cycle {
 	struct retract retract;		/* the one under way, or the last */
 	struct servo servo;
 	struct arcing arcing;
+	struct asking asking;
 	struct flush flush;
 	struct probe probe;
 	struct mover mover;		/* speed along the path or the escape */
 	struct escape escape;		/* the way out beside the path */
 	struct axes axes;		/* their power */
+	struct resync resync;		/* from where they stand to the path */
 	struct cycle_ahead ahead;
 	struct manual manual;		/* motion without a program */
 	struct limit limit;
@@ -273,7 +280,7 @@ static inline bool cycle_is_manual(const struct cycle *c)
 static inline bool cycle_moves(const struct cycle *c)
 {
 	return state_duty[c->state].running || c->hold.moving ||
-	       cycle_is_manual(c) || c->axes.awaited ||
+	       cycle_is_manual(c) || c->axes.phase != AXES_FREE ||
 	       c->mover.v_mm_s != 0;
 }
 

@@ -89,10 +89,17 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 	}
 }
 
+void cycle_start(struct cycle *c, double unused)
+{
+	(void)unused;
+	cycle_set_off(c);
+}
+
 void cycle_end_job(struct cycle *c, enum cycle_outcome o)
 {
 	c->outcome = o;
 	c->loaded = false;
+	resync_settle(c);
 	c->escape = (struct escape) { .nlegs = 0 };
 	cycle_enter(c, STATE_IDLE);
 }

@@ -46,6 +46,9 @@ static inline void cycle_set_off(struct cycle *c)
 						    EVENT_START);
 }
 
+/** cycle_start() - the same, for axes_want(). */
+void cycle_start(struct cycle *c, double unused);
+
 /** cycle_reset() - leave a fault: to hold, or to idle if there is no job. */
 void cycle_reset(struct cycle *c);
 

@@ -140,7 +140,7 @@ static bool is_unplanned(const struct cycle *c)
 
 double feed_distance(struct cycle *c)
 {
-	if (is_unplanned(c))
+	if (is_unplanned(c) || asking_waits(c))
 		return pace_go(c, 0, INFINITY);
 	return laws[c->state](c);
 }

@@ -25,6 +25,7 @@ static const char *const answers[CYCLE_NANSWERS] = {
 	[ANSWER_NOT_UP]		= "the drives are not up yet",
 	[ANSWER_LOCKED]		= "a guard or the PLC does not permit it",
 	[ANSWER_STILL_THERE]	= "what caused the fault is still there",
+	[ANSWER_NO_POWER]	= "an axis cannot have power",
 };
 
 const char *cycle_outcome_name(enum cycle_outcome o)

@@ -115,6 +115,9 @@ enum cycle_restored cycle_restore(struct cycle *c,
 	restore_mcode(c, past);
 	if (isfinite(past->back_mm))
 		c->back_mm = fmax(c->back_mm, past->back_mm);
+	if (isfinite(past->sure_mm))
+		c->resync.sure_mm = past->sure_mm;
+	c->resync.sure_beside = escape_is_out(&c->escape);
 	c->totals = past->totals;
 	return RESTORED;
 }

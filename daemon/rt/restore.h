@@ -16,7 +16,7 @@
 
 /* What the killed cycle said last about its job. */
 struct cycle_past {
-	double far_mm, back_mm;
+	double far_mm, back_mm, sure_mm;	/* the last: resync.h */
 	int32_t pos[INTERP_NAXES];	/* where the axes were sent, pulses */
 	int32_t shift[INTERP_NAXES], found[2][INTERP_NAXES];	/* probe.h */
 	uint32_t found_once, found_twice;

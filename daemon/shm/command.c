@@ -11,13 +11,13 @@
 #include "object.h"
 
 #include "places.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <pwd.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -116,19 +116,6 @@ static void *commands_run(void *arg)
 	return NULL;
 }
 
-/* No signal is delivered to this thread. */
-static int thread_start(struct shm_commands *c)
-{
-	sigset_t all, before;
-	int err;
-
-	sigfillset(&all);
-	pthread_sigmask(SIG_SETMASK, &all, &before);
-	err = pthread_create(&c->thread, NULL, commands_run, c);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	return -err;
-}
-
 /* -- edmd: beginning and end ---------------------------------------------- */
 
 static int listen_at(struct shm_commands *c, const struct sockaddr_un *at)
@@ -138,7 +125,10 @@ static int listen_at(struct shm_commands *c, const struct sockaddr_un *at)
 	if (c->listening < 0)
 		return c->listening;
 	c->end = eventfd(0, EFD_CLOEXEC);
-	return c->end < 0 ? -errno : thread_start(c);
+	return c->end < 0 ? -errno :
+	       thread_start(&c->thread, &(struct thread) {
+			.name = "edmd-commands", .run = commands_run,
+			.arg = c });
 }
 
 static void commands_free(struct shm_commands *c)
@@ -181,14 +171,9 @@ int shm_command_create(struct shm_commands **ret, const char *machine,
 
 void shm_command_destroy(struct shm_commands *c)
 {
-	const uint64_t one = 1;
-
 	if (!c)
 		return;
-	/* Writing 1 to an eventfd whose count is 0 cannot fail. */
-	if (write(c->end, &one, sizeof(one)) != sizeof(one))
-		abort();
-	pthread_join(c->thread, NULL);
+	object_thread_end(c->thread, c->end);
 	unlink(c->path);
 	commands_free(c);
 }

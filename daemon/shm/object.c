@@ -10,6 +10,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -207,6 +208,16 @@ int object_open(void **ret, const char *machine, const char *what,
 	err = object_open_fd(ret, fd, bytes, writable);
 	close(fd);
 	return err;
+}
+
+void object_thread_end(pthread_t thread, int end)
+{
+	const uint64_t one = 1;
+
+	/* Writing 1 to an eventfd whose count is 0 cannot fail. */
+	if (write(end, &one, sizeof(one)) != sizeof(one))
+		abort();
+	pthread_join(thread, NULL);
 }
 
 /*

@@ -9,6 +9,8 @@
 
 #include "shm.h"
 
+#include <pthread.h>
+
 #define OBJECT_PATH_MAX	SHM_PATH_MAX
 
 /** object_path() - places_path() of an object. */
@@ -67,6 +69,9 @@ int object_head_check(const struct shm_head *h, uint64_t bytes);
 /** object_open() - map a whole object that another process made. */
 int object_open(void **ret, const char *machine, const char *what,
 		size_t bytes, bool writable);
+
+/** object_thread_end() - tell it by the eventfd @end, and wait for it. */
+void object_thread_end(pthread_t thread, int end);
 
 /** object_words_put() - to shared memory; @bytes is a multiple of 8. */
 void object_words_put(void *shared, const void *from, size_t bytes);

@@ -8,7 +8,8 @@
  *	status		edmd writes, anyone of the group reads: one snapshot,
  *			a ring of per-cycle trace records, a ring of events
  *	command		a socket: edmd-jobs sends commands, each is answered by
- *			an event with its id
+ *			an event with its id; acts that end motion also come by
+ *			a socket of their own (shm_stop_create())
  *	program.<n>	edmd-jobs writes once; edmd copies it before it looks at
  *			it (interp/program.h)
  *
@@ -50,7 +51,7 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	9
+#define SHM_LAYOUT	10
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 #define SHM_PATH_MAX	96
@@ -133,6 +134,8 @@ struct shm_snapshot {
 	 * at pulse 0, if they are known; the direction in which each axis moved
 	 * last. */
 	int32_t drive[SHM_NAXES], home_shift[SHM_NAXES], origin[SHM_NAXES];
+	int32_t off[SHM_NAXES];		/* they stand beside that, pulses */
+	double sure_mm;			/* the place where they last did not */
 	int8_t toward[SHM_NAXES];
 	int8_t limit_side[SHM_NAXES];	/* of the switches in `limit` */
 	double axes_c;			/* as a PLC told it; 0: not told */
@@ -187,6 +190,9 @@ enum shm_event_kind {
 	SHM_EV_SET,			/* id: the field, enum interp_tech_id */
 	SHM_EV_SELECT,			/* by the PLC; code: job n */
 	SHM_EV_HUNTING,			/* code: retracts in a row */
+	SHM_EV_HAND,			/* it stands until a person has set
+					 * fields; id: a bit of each, enum
+					 * interp_tech_id */
 };
 
 struct shm_event {
@@ -294,6 +300,7 @@ enum shm_answer {
 	SHM_DONE, SHM_NO_PROGRAM, SHM_WRONG_STATE, SHM_BAD_ARGUMENT,
 	SHM_NOT_HOMED, SHM_AT_LIMIT, SHM_BEYOND, SHM_NO_NODE, SHM_NOT_PASSED,
 	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED, SHM_STILL_THERE,
+	SHM_NO_POWER,
 	/* Not of the cycle: */
 	SHM_LATE = 50,			/* came after its until_ns: not done */
 	SHM_CUT_SHORT,			/* edmd ended while it did it; the place
@@ -320,6 +327,7 @@ struct shm_command {
 };
 
 struct shm_commands;			/* edmd's end */
+struct shm_stops;			/* of stop.c */
 
 /* -- Writer: edmd ------------------------------------------------------- */
 
@@ -380,6 +388,28 @@ void shm_command_destroy(struct shm_commands *c);
  * checked. RT-safe.
  */
 bool shm_command_take(struct shm_commands *c, struct shm_command *ret);
+
+/**
+ * shm_stop_create() - listen at the place "stop" for acts that end motion:
+ * words/stop_act.h.
+ *
+ * The group may connect.  It starts a thread that takes acts from the socket,
+ * and answers them when @status has the answer.  Startup only.
+ */
+int shm_stop_create(struct shm_stops **ret, const char *machine,
+		    const struct shm_status *status);
+
+/** shm_stop_destroy() - end the thread, remove the socket; @s may be NULL. */
+void shm_stop_destroy(struct shm_stops *s);
+
+/**
+ * shm_stop_take() - the next act, as a command that is checked and never late.
+ * @s: NULL: there is none.  RT-safe.
+ */
+bool shm_stop_take(struct shm_stops *s, struct shm_command *ret);
+
+/** shm_stop_waits() - how many acts wait to be taken.  Any thread. */
+unsigned int shm_stop_waits(const struct shm_stops *s);
 
 /**
  * shm_done_begin() - record that command @id is taken, before it has any

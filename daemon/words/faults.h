@@ -154,7 +154,11 @@ F(MCODE, "m-code", FAULT_BRAKES, false, FAULT_IN_JOB, \
 F(STUCK, "stuck", FAULT_ENDS, false, FAULT_IN_JOB, \
   "the motion stands still and nothing says why", \
   "it is to move, nothing holds it, and no lattice point came for a second: a defect of the path or of edmd", \
-  "report it with the program; edmctl reset; start tries again, stop ends the job")
+  "report it with the program; edmctl reset; start tries again, stop ends the job") \
+F(GENERATOR, "generator", FAULT_BRAKES, false, FAULT_IN_POWER, \
+  "the generator does not have what the condition asks for", \
+  "it is silent, tells another value than it was asked for, or its lines do not answer; edmd's log names the field, what was asked and what was told", \
+  "look at the generator and its cable; " FAULT_RESET)
 /* clang-format on */
 
 #define FAULT_ENUM(id, ...)	FAULT_##id,

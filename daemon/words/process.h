@@ -16,6 +16,8 @@
 
 #include "interp/tech.h"
 
+#include <stddef.h>
+
 /* S(id, of, member): a field that replaces a setting of the machine file. */
 #define PROCESS_SETTINGS(S) \
 	S(SERVO_V, gap, servo_v) \
@@ -32,6 +34,53 @@
 	S(JUMP_EVERY_S, jump, every.s) \
 	S(JUMP_DEPTH_MM, jump, every_mm) \
 	S(JUMP_SHORT_OF_MM, jump, short_of_mm)
+
+/*
+ * What crosses to the generator: the fields of a condition up to
+ * INTERP_NGENERATOR, by enum interp_tech_id, and then these, which are 0 or 1.
+ */
+enum process_id {
+	PROCESS_SENSE = INTERP_NGENERATOR,	/* the voltage to feel contact
+						 * by */
+	PROCESS_PUMP,
+	PROCESS_SPARK,
+	PROCESS_NFIELDS
+};
+
+#define PROCESS_VALUES_MAX	64
+
+/* The values of one field that reach the generator. */
+struct process_delivers {
+	bool there;
+	bool by_hand;			/* a person sets it */
+	double min, max, step;		/* with n 0 */
+	uint32_t n;			/* else these alone, in any order */
+	double value[PROCESS_VALUES_MAX];
+};
+
+/** process_name() - of a field of enum process_id. */
+const char *process_name(int field);
+
+/**
+ * process_nearest() - what the generator does when it is asked for @asked.
+ *
+ * For the peak current that is the nearest value not above it, for all else the
+ * nearest one.  RT-safe.
+ * Return: NAN if there is none: it is not delivered, or out of range.
+ */
+double process_nearest(const struct process_delivers *d, int field,
+		       double asked);
+
+/** process_range_text() - which values reach the generator, into @buf. */
+void process_range_text(const struct process_delivers *d, int field, char *buf,
+			size_t size);
+
+/* %s: names of fields. */
+#define PROCESS_HAND	"it stands: set %s of the condition at the generator, " \
+			"then start"
+
+/** process_names() - of a set of fields, a bit each, into @buf; returns it. */
+const char *process_names(uint64_t fields, char *buf, size_t size);
 
 /** process_setting() - where @gap or @jump has field @id; NULL: nowhere, the
  *  generator is asked for it, or nothing goes by it.  RT-safe. */

@@ -243,30 +243,11 @@ bool local_send(const struct local *l, const struct local_who *who,
 
 /* -- A client ------------------------------------------------------------- */
 
-static int peer_check(int fd)
-{
-	struct ucred peer;
-	socklen_t size = sizeof(peer);
-
-	if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) < 0)
-		return -errno;
-	return places_is_trusted(peer.uid, PLACES_JOBS) ? 0 : -EPERM;
-}
-
 int local_connect(const struct sockaddr_un *at)
 {
-	const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC |
-			      SOCK_NONBLOCK, 0);
-	int err;
+	const int fd = places_connect(at, PLACES_JOBS);
 
-	if (fd < 0)
-		return -errno;
-	err = connect(fd, (const struct sockaddr *)at, sizeof(*at)) < 0 ?
-	      -errno : peer_check(fd);
-	if (err < 0) {
-		close(fd);
-		return err;
-	}
-	buffer_grow(fd);
+	if (fd >= 0)
+		buffer_grow(fd);
 	return fd;
 }

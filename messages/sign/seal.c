@@ -118,3 +118,22 @@ bool seal_holds(const struct seal *s, const char *channel)
 	free(all);
 	return good;
 }
+
+uint64_t seal_act_id(const uint8_t key[SEAL_KEY_BYTES], const char *client,
+		     int64_t seq)
+{
+	crypto_generichash_state h;
+	unsigned char out[crypto_generichash_BYTES_MIN];
+	uint64_t id;
+
+	crypto_generichash_init(&h, NULL, 0, sizeof(out));
+	crypto_generichash_update(&h, key, SEAL_KEY_BYTES);
+	crypto_generichash_update(&h, (const unsigned char *)&seq, sizeof(seq));
+	crypto_generichash_update(&h, (const unsigned char *)client,
+				  strlen(client));
+	crypto_generichash_final(&h, out, sizeof(out));
+	memcpy(&id, out, sizeof(id));
+	/* SQLite stores signed 64-bit numbers; 0 means "no id". */
+	id &= INT64_MAX;
+	return id ? id : 1;
+}

@@ -55,4 +55,12 @@ bool seal_read(struct seal *ret, const void *packet, size_t bytes);
 /** seal_holds() - is it a valid signature by @s->key, for @channel? */
 bool seal_holds(const struct seal *s, const char *channel);
 
+/**
+ * seal_act_id() - the number by which a command is done once, whichever way it
+ * comes: of who signs, of the client's name and of its seq.  From 1 to
+ * INT64_MAX.
+ */
+uint64_t seal_act_id(const uint8_t key[SEAL_KEY_BYTES], const char *client,
+		     int64_t seq);
+
 #endif /* EDM_SEAL_H */

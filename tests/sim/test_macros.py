@@ -3,6 +3,7 @@
 against the same program written out line by line.
 """
 import math
+import os
 import re
 import subprocess
 
@@ -125,6 +126,205 @@ def test_what_is_nearly_equal_is_equal_as_in_linuxcnc(tmp_path):
     assert_same(path, tmp_path)
 
 
+class Words:
+    """A random program of O words, with the layout in which rs274 takes it."""
+
+    def __init__(self, rnd):
+        self.rnd = rnd
+        self.names = 0
+        self.depth = 0
+        self.lines = ["G21 G90", "#1=1 #2=2 #<_n>=0"]
+        self.subs = []
+
+    def name(self):
+        self.names += 1
+        return self.rnd.choice([f"{self.names}00", f"<loop_{self.names}>"])
+
+    def noise(self, *tokens, comments=99):
+        """Upper and lower case, blanks and tabs, and comments where rs274 has them:
+        behind so many tokens."""
+        rnd, ret = self.rnd, rnd_blank(self.rnd)
+        for i, t in enumerate(tokens):
+            ret += "".join(rnd.choice([c.upper(), c.lower()]) for c in t)
+            ret += rnd_blank(rnd)
+            if i >= comments and rnd.random() < 0.4:
+                ret += rnd.choice(["(length)", "( X9 [7] )", "(o1 if)"])
+        self.lines.append(ret + rnd.choice(["", "", "(end)", "; [2] X5"]))
+        for _ in range(rnd.randrange(-3, 3)):
+            self.lines.append(rnd.choice(["", "  ", "(a line)", "; another"]))
+
+    def expression(self):
+        return expression(self.rnd, 1).replace("#<a>", "#<_n>")
+
+    def truth(self):
+        return f"[{self.expression()} {self.rnd.choice(['lt', 'ge'])} " \
+               f"{self.expression()}]"
+
+    def move(self):
+        self.noise("G0", f"X[5*sin[{self.expression()}]]", "Y[#<_n>]")
+        self.noise("#<_n>=[#<_n>+1]")
+
+    def block(self):
+        """Without break and continue: rs274 keeps what it knows of them, and carries
+        out a later loop once too often or too seldom.  They have a test of their
+        own."""
+        self.depth += 1
+        for _ in range(self.rnd.randint(1, 3)):
+            kinds = [self.move, self.move]
+            if self.depth < 4:
+                kinds += [self.if_, self.while_, self.do, self.repeat, self.call]
+            self.rnd.choice(kinds)()
+        self.depth -= 1
+
+    def if_(self):
+        o = self.name()
+        self.noise("o", o, "if", self.truth())
+        self.block()
+        for _ in range(self.rnd.randrange(3)):
+            self.noise("o", o, "elseif", self.truth())
+            self.block()
+        if self.rnd.random() < 0.5:
+            self.noise("o", o, "else")
+            self.block()
+        self.noise("o", o, "endif")
+
+    def counted(self):
+        i = f"#<_i{self.names}>"
+        self.noise(f"{i}=0")
+        return f"{i}=[{i}+1]", f"[{i} lt {self.rnd.randrange(4)}]"
+
+    def while_(self):
+        o = self.name()
+        step, truth = self.counted()
+        self.noise("o", o, "while", truth)
+        self.noise(step)
+        self.block()
+        self.noise("o", o, "endwhile")
+
+    def do(self):
+        o = self.name()
+        step, truth = self.counted()
+        self.noise("o", o, "do")
+        self.noise(step)
+        self.block()
+        self.noise("o", o, "while", truth)
+
+    def repeat(self):
+        o = self.name()
+        self.noise("o", o, "repeat", f"[{self.rnd.randrange(4)}]")
+        self.block()
+        self.noise("o", o, "endrepeat")
+
+    def call(self):
+        o = self.name()
+        args = [f"[{self.expression()}]" for _ in range(self.rnd.randrange(5))]
+        self.noise("o", o, "call", *args, comments=2)
+        self.noise("G0", "X[5*sin[#<_value>]]", "Y[#<_n>+0.5]")
+        self.subs.append((o, self.depth))
+
+    def sub(self, o):
+        self.noise("o", o, "sub")
+        for i in self.rnd.sample(range(1, 6), 3):
+            self.noise("G0", f"X[5*sin[#{i}]]", f"Y[#<_n>+{i}]")
+        self.block()
+        if self.rnd.random() < 0.5:
+            q = self.name()
+            self.noise("o", q, "if", self.truth())
+            self.noise("o", o, "return", f"[{self.expression()}]")
+            self.noise("o", q, "endif")
+        self.noise("o", o, "endsub", f"[{self.expression()}]")
+
+    def write(self):
+        self.move()
+        self.block()
+        self.noise("G0", "X1", "Y-1")
+        main, self.lines = self.lines, []
+        begin = []
+        while self.subs:
+            o, self.depth = self.subs.pop()
+            self.lines = []
+            self.sub(o)
+            begin = self.lines + begin
+        return "\n".join(main[:2] + begin + main[2:] + ["M2", ""])
+
+
+@peer
+@pytest.mark.parametrize("word", ["break", "continue"])
+@pytest.mark.parametrize("begin, end", [
+    ("while [#1 lt 4]", "endwhile"), ("do", "while [#1 lt 4]")])
+def test_break_and_continue_go_where_linuxcnc_goes(word, begin, end, tmp_path):
+    path = tmp_path / "b.ngc"
+    path.write_text(f"G21 G90\n#1=0\no1 {begin}\n#1=[#1+1]\nG0 X[#1]\n"
+                    f"o2 if [#1 eq 2]\no1 {word}\no2 endif\nG0 Y[#1]\no1 {end}\n"
+                    "G0 Z-1\nM2\n")
+    assert_same(path, tmp_path)
+
+
+def rnd_blank(rnd):
+    return rnd.choice(["", "", " ", "  ", "\t"])
+
+
+@peer
+def test_random_o_words_end_where_linuxcnc_ends_in_any_layout(tmp_path):
+    """EDM_RUNS says how many."""
+    rnd = seeded()
+    for i in range(int(os.environ.get("EDM_RUNS", 40))):
+        path = tmp_path / f"{i}.ngc"
+        path.write_text(Words(rnd).write())
+        assert_same(path, tmp_path)
+
+
+@pytest.mark.parametrize("dialect", ["linuxcnc", "heekscnc", "fanuc-sinker",
+                                     "makino"])
+def test_a_line_with_a_variable_may_begin_a_program(dialect):
+    """It is read in a buffer that the next line uses again."""
+    o = "O1 #5=#5+1" if dialect in ("fanuc-sinker", "makino") else "O1"
+    machine = ROOT / ("examples/wire.ini" if dialect == "makino" else
+                      "examples/machine.ini")
+    times = "M98 P20001" if dialect == "makino" else "M98 P1 L2"
+    rows = done("--machine", machine, "--dialect", dialect, "--emit", "iso",
+                text=f"G90\n{times}\nM30\n{o}\nG91 G0 X1.\nM99\n"
+                "N1 G0 X9.\n").stdout.decode()
+    assert re.findall(r"X(\S+)", rows) == ["1", "2"]
+
+
+def test_the_same_with_two_megabytes_of_text():
+    text = "G90\nG65 P1 L2 A1.\nM30\n" + "(filled up)\n" * 170000 + \
+        "O1 #2=#1\nG91 G0 X#2\nM99\n"
+    assert emitted(text) == ["X1", "X2"]
+
+
+def test_a_program_has_a_name_and_a_tape_its_leaders():
+    """NUL and DC2 in front, DC4 and NUL behind; a title behind the %."""
+    text = "\0\0\x12%  PART-7 (REV 2)\n<PART-7>\nG90 M98 <sub_1> L2\n" \
+        "G65 <SUB_1> L2 A3.\nM30\n<Sub_1> (two)\nG91 G0 X[1+#1]\nM99\n" \
+        "%\nG0 X99.\n\x14\0\0"
+    assert emitted(text) == ["X1", "X2", "X6", "X10"]
+    r = run("--dialect", "fanuc-sinker", "--check", text=text)
+    assert r.returncode == 0 and b":1: note: % begins the text" in r.stderr
+
+
+def test_a_comment_may_stand_wherever_a_blank_may():
+    plain = "N5 IF [#1 LT 2] GOTO 7\nX9.\nN7 WHILE [#1 LT 2] DO1\n#1=#1+1\n" \
+        "X[#1*2]\nEND1\nM30\n"
+    noisy = "(a) N5 (b) IF (c) [#1 (d) LT (e) 2 (f)] (g) GOTO (h) 7 (i)\nX9.\n" \
+        "(j) N7 WHILE (k) [#1 LT 2] (l) DO (m) 1\n#1 (n) = (o) #1 (p) + 1\n" \
+        "X[#1 (q) * 2]\n(r) END (s) 1\nM30\n"
+    head = "G90 G21 G0\n#1=0\n"
+    assert emitted(head + plain) == emitted(head + noisy) == ["X2", "X4"]
+
+
+@peer
+def test_the_places_of_linuxcnc_have_names(tmp_path):
+    path = tmp_path / "p.ngc"
+    path.write_text("G21 G90\nG0 X3 Y4 Z-1\nG0 X[#<_y>+#<_z>] Y[#<_X>*2]\n"
+                    "G92 X1\nG0 Y[#<_x>]\nM2\n")
+    assert ours(path, "linuxcnc")[-1][:3] == (3, 1, -1)
+    path.write_text("G21 G90\nG0 X3 Y4 Z-1\nG0 X[#<_y>+#<_z>] Y[#<_X>*2]\n"
+                    "M2\n")
+    assert_same(path, tmp_path)
+
+
 def written_out(text, tmp_path):
     path = tmp_path / "out.nc"
     path.write_text(text)
@@ -216,11 +416,48 @@ REFUSED = [
      b":1:17: error: words behind a jump"),
     ("linuxcnc", "o1 repeat [2] X7\no1 endrepeat\n",
      b":1:15: error: words behind a jump"),
+    ("linuxcnc", "o1 if [1 EQ 1] [1 EQ 0]\no1 endif\n",
+     b":1:16: error: words behind a jump"),
+    ("linuxcnc", "o1 repeat [2] (n) [3]\no1 endrepeat\n",
+     b":1:19: error: words behind a jump"),
+    ("linuxcnc", "o1 if [0]\no1 elseif [1] [0]\no1 endif\n",
+     b":2:15: error: words behind a jump"),
+    ("linuxcnc", "o1 while [0]\no1 endwhile [1]\no1 sub [2]\no1 endsub\n",
+     b":3:8: error: words behind a jump"),
+    ("linuxcnc", "o1 call [1] (a) [2] (b) X3\nM2\no1 sub\no1 endsub\n",
+     b":1:25: error: words behind a jump"),
+    ("fanuc-sinker", "IF[1 EQ 2]GOTO 5 X3.\nN5 M30\n",
+     b":1:18: error: words behind a jump"),
+    ("fanuc-sinker", "IF[1 EQ 2]THEN #1=5 #2=6\nM30\n",
+     b":1:21: error: words behind a jump"),
+    ("fanuc-sinker", "G0 X1.\nGOTO 5\n%\nN5 X2.\nM30\n",
+     b":2:1: error: GOTO 5, which is not there"),
+    ("fanuc-sinker", "%\nM98 P5\nM30\n%\nO5 G0 X2.\nM99\n",
+     b":2:5: error: a call of O5, which is not there"),
+    ("linuxcnc", "o1 if [0]\nG0 X1\n%\no1 endif\n",
+     b":1:1: error: o1 without its endif"),
+    ("linuxcnc", "%\no1 call\n%\no1 sub\nG0 X1\no1 endsub\n",
+     b":2:1: error: a call of o1, which is not there"),
+    ("fanuc-sinker", "M98 <AB>\nM30\n<ABC>\nM99\n",
+     b":1:5: error: a call of <AB>, which is not there"),
+    ("fanuc-sinker", "M98 <AB> P1\nM30\n<AB>\nM99\n",
+     b":1:1: error: M98 with P and a <NAME>"),
+    ("fanuc-sinker", "M98 <A>\nM30\n<A>\nM99\n<a> (again)\nM99\n",
+     b":5:1: error: a second <a>; the first is in line 3"),
+    ("fanuc-sinker", "G65 <A> P1\nM30\n<A>\nM99\n",
+     b":1:9: error: a second program behind G65"),
+    ("linuxcnc", "G0 X#<_feed>\n",
+     b":1:5: error: #<_feed>, which has no value; a parameter that the"),
+    ("linuxcnc", "#<_x> = 3\n", b":1:1: error: a value for #<_x>, which is"),
+    ("linuxcnc", "F5 G2 X1 I1 P2\n", b":1:13: error: P2: turns of an arc"),
+    ("linuxcnc", "G10 L2 P1 R30\n", b":1:11: error: R30: it turns the work"),
+    ("fanuc-wire", "M98 P1 L2\nM30\nO1\nM99\n",
+     b":1:8: error: L2: in this dialect the centre of the top's arc"),
     ("fanuc-sinker", "O12345\nGOTO 7\nM30\nO23456\nN7 G0 X1.\nM30\n",
      b":2:1: error: GOTO 7, which is not there"),
     ("fanuc-sinker", "GOTO #5\n", b":1:1: error: GOTO a variable without"),
     ("generic", "M98 P2\nM2\nO2\nM99 P5\n", b":4:5: error: M99 with P; M99"),
-    ("linuxcnc", "G0 X#<none>\n", b":1:5: error: #<none>, which has none; a"),
+    ("linuxcnc", "G0 X#<none>\n", b":1:5: error: #<none>, which has no value; a"),
     ("linuxcnc", "o1 while [1]\no1 endwhile\n", b":2:1: error: a loop that has"),
     ("linuxcnc", "o1 call\nG0 X1\n", b":1:1: error: a call of o1, which"),
     ("linuxcnc", "o1 if [0]\nG0 X1\n", b":1:1: error: o1 without its endif"),

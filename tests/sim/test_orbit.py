@@ -86,6 +86,29 @@ def test_the_time_of_a_cycle_ends_it_and_the_job_goes_on(tmp_path):
     assert -1 < low < 0.05
 
 
+CLOSED = """G6.2 P3 K0 X0 Y0
+K0 X{0} Y0
+K0 X{0} Y{0}
+K1 X0 Y0
+K2
+K2
+K2
+"""
+
+
+@pytest.mark.parametrize("motion", [
+    "G130 R{0} P3", *(f"G{g} Z{{1}} R{{0}} Q{{2}} P3" for g in range(130, 136)),
+    "G2 I{0}", CLOSED])
+def test_inches_take_as_long_as_millimetres(motion):
+    """Also where a motion ends where it began."""
+    inch, mm = (report("--dry-run", text=f"{units} G90 F{4 * k}\nG1 Z{-.1 * k}\n"
+                       + motion.format(.02 * k, -.14 * k, .01 * k)
+                       + "\nM2\n")
+                for units, k in (("G20", 1), ("G21", 25.4)))
+    assert mm["pulses"] == inch["pulses"]
+    assert abs(inch["virtual_s"] / mm["virtual_s"] - 1) < 1e-3
+
+
 @pytest.mark.parametrize("line,column,words", [
     ("G130 Z-1 R0", 10, "an orbit of radius 0 mm"),
     ("G130 Z-1 I0.1 J0.2", 10, "leaves a radius of -0.1 mm"),

@@ -362,7 +362,7 @@ def test_ctrl_c_before_the_first_way_writes_nothing(channel, tmp_path):
     out = tmp_path / "way.ngc"
     rc, _, seen = on_a_terminal(
         [B / "edm-plan", *args(channel, "--clearance", "0.3", "--output", out,
-                               "--end-pose", "Z-60")], b"pulling out")
+                               "--end-pose", "Z-60")], b"a way out")
     # As above: a plan that was ready is written.
     assert out.exists() == (rc == 0)
     assert rc == 0 or "interrupted; nothing is written" in seen

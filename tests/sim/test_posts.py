@@ -31,6 +31,9 @@ z_second_mm = 40
 offset_1_mm = 0.14
 """
 
+# The program defines its conditions: no column of them is used.
+TECH = "condition, servo_v\nC999, 20\ninline C =" + " -" * 16 + "\n"
+
 # The file's name begins with its dialect.  What generic says of it first (None:
 # it takes it), and what is ignored or mentioned in its own.
 FILES = {
@@ -79,7 +82,11 @@ def check(name, dialect, wire):
     sinks = dialect_of(name) in ("charmilles-cmd", "fanuc-sinker", "generic",
                                  "heekscnc", "linuxcnc", "sodick-sinker")
     machine = ROOT / "examples/machine.ini" if sinks else wire
-    return run("--machine", machine, "--dialect", dialect, "--check",
+    tech = []
+    if name == "sodick-wire.nc":
+        tech = ["--tech", wire.parent / "wire.tech"]
+        tech[1].write_text(TECH)
+    return run("--machine", machine, "--dialect", dialect, "--check", *tech,
                POSTS / name)
 
 
@@ -158,6 +165,33 @@ def test_check_says_where_as_a_run_does(text):
         place.append(re.search(r"^-:([1-9]\d*:[1-9]\d*): error: .*",
                                r.stderr.decode(), re.M).group(0))
     assert place[0] == place[1]
+
+
+def test_check_counts_the_refusal_of_a_record_too(tmp_path):
+    for suffix in ("3b", "4b"):
+        job = tmp_path / f"a.{suffix}"
+        job.write_text("B1 B2 B\n")
+        r = run("--machine", ROOT / "examples/wire.ini", "--check", job)
+        said = r.stderr.decode().splitlines()
+        assert r.returncode == 65 and ": error: " in said[0], said
+        assert said[1].endswith(": 1 refusal") and len(said) == 2, said
+
+
+def test_numbers_of_a_condition_that_mean_nothing_are_told():
+    def said(dialect, text):
+        r = run("--machine", ROOT / "examples/wire.ini", "--dialect", dialect,
+                "--check", text=text)
+        return r.returncode, re.findall(r"the numbers behind (\S+) have no effect|"
+                                        r":(\d+:\d+): error: (\S+), which the",
+                                        r.stderr.decode())
+    defined = "E001= 60 6 20 5 1 0 50\nG1 X1.\n"
+    assert said("skd2", defined + "M02\n") == (0, [("E001", "", "")])
+    assert said("skd2", defined + "E001\nX2.\nM02\n") == \
+        (65, [("E001", "", ""), ("", "3:1", "E001")])
+    assert said("sodick-wire", "C001 = 10 15\nC001 G1 X1.\nM02\n") == \
+        (65, [("C001", "", ""), ("", "2:1", "C001")])
+    # What no program defines is called as it is, where there is no table.
+    assert said("skd2", "E001\nG1 X1.\nM02\n") == (0, [])
 
 
 def test_what_is_skipped_is_told_with_its_line():

@@ -63,7 +63,7 @@ def nest(depth):
      "recursion"),
     ("G21 F60\nM98 P7\nM2\n", "2:5", "O7"),
     ("G21 F60\nM99\n", "2:1", "M99"),
-    (b"G21 F60\nG1 X1\0\n", "2:6", "0x00"),
+    (b"G21 F60\nG1 X1\0\nX2\n", "2:6", "0x00"),
     ("G21 F60\nG1 X1 \u00e9\n", "2:7", "byte 0x"),
 ])
 def test_bad_code_is_refused_where_it_stands(tmp_path, text, where, found):

@@ -10,6 +10,7 @@ import random
 import re
 import resource
 import subprocess
+from pathlib import Path
 
 import pytest
 
@@ -55,7 +56,8 @@ def test_the_readme_shows_what_its_command_prints(tmp_path):
 
 
 # To start from.  Each is understood, and has the backend that its name says.
-START = {"machine-gpio.ini": "gpio", "machine-can402.ini": "can402",
+START = {"machine-gpio.ini": "gpio", "machine-gpio-generator.ini": "gpio",
+         "machine-can402.ini": "can402",
          "machine-wire.ini": "null", "machine-five-axis.ini": "null",
          "template.ini": "null"}
 
@@ -65,6 +67,46 @@ def test_a_file_to_start_from_is_understood(name):
     assert f"\nbackend = {START[name]}" in (EXAMPLES / name).read_text()
     done("--machine", EXAMPLES / name, "--check",
          text="G21 G90 G0 X5.\nG1 Y5. F10\nM2\n")
+
+
+CALLS = "G21 G90 T84\nM4\nG0 Z0\nF30\nC120\nG1 Z-2.\nC200\nG1 Z-3.\nM2\n"
+
+
+def test_a_condition_that_does_not_reach_the_generator_is_refused(tmp_path):
+    table = EXAMPLES / "copper-steel.tech"
+    p = run("--machine", EXAMPLES / "machine-gpio.ini", "--tech", table,
+            "--check", text=CALLS)
+    assert p.returncode == 78
+    assert f"{table}:20:1: error: C100: peak_a 6 A does not reach" in p.stderr.decode()
+    assert "[generator] by_hand = peak_a" in p.stderr.decode()
+    p = run("--machine", EXAMPLES / "machine-gpio.ini", "--check",
+            text=CALLS)
+    assert p.returncode == 65
+    assert b"-:1:9: error: the pump, which nothing switches on" in p.stderr
+    p = run("--machine", EXAMPLES / "machine-gpio.ini", "--check",
+            text=CALLS.replace(" T84", ""))
+    assert p.returncode == 65
+    assert b"-:2:1: error: a negative electrode: polarity -1" in p.stderr
+
+
+def test_edmd_refuses_it_too(tmp_path):
+    edmd = Path(PROGRAM).parent / "edmd"
+    text = (EXAMPLES / "machine-gpio.ini").read_text()
+    (tmp_path / "m.ini").write_text(
+        f"{text}\n[tech]\ntable = {EXAMPLES}/copper-steel.tech\n")
+    p = subprocess.run([edmd, "--check", "--config", tmp_path / "m.ini"],
+                       capture_output=True)
+    assert p.returncode == 78
+    assert "copper-steel.tech:20:1" in p.stderr.decode()
+    assert "peak_a 6 A does not reach the generator" in p.stderr.decode()
+
+
+def test_a_generator_on_lines_has_the_conditions_of_the_table():
+    done("--machine", EXAMPLES / "machine-gpio-generator.ini", "--check",
+         text=CALLS)
+    p = run("--machine", EXAMPLES / "machine-gpio-generator.ini", "--check",
+            text="G21 G90\nC120 M3\nG80 Z-\nM2\n")
+    assert p.returncode == 0, p.stderr
 
 
 @pytest.mark.parametrize("name, job", [("machine-wire.ini", "taper"),

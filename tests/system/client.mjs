@@ -12,7 +12,9 @@ import crypto from "node:crypto"
 import dgram from "node:dgram"
 import fs from "node:fs"
 
-const GROUP = "239.255.76.67", PORT = 7667
+const URL = process.env.LCM_DEFAULT_URL ?? "udpm://239.255.76.67:7667?ttl=0"
+const [, GROUP, port] = URL.match(/^udpm:\/\/([0-9.]+):(\d+)\?ttl=0$/)
+const PORT = Number(port)
 const TYPE = {
 	signed: "49657b54b950317d", command: "633b130fba8a2ccf",
 	ack: "e7a36102b59e523d", chunk: "9e1f02d601e2f309",

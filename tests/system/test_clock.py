@@ -30,7 +30,7 @@ class Jumping(rig.Machine):
         self.shim = shim
 
     def _start(self, program, *args):
-        env = os.environ | {"LD_PRELOAD": str(self.shim),
+        env = os.environ | {"LD_PRELOAD": rig.preload(self.shim),
                             "EDM_CLOCK": str(self.folder / "ahead")}
         with open(self.folder / f"{program}.log", "ab") as log:
             return subprocess.Popen([str(rig.BUILD / program), *args],

@@ -139,7 +139,7 @@ def test_watch_redraws_one_line_on_a_terminal(machine):
     p = subprocess.Popen(
         [str(BUILD / "edmctl"), "--machine", machine.name, "submit",
          write(machine, "slow.ngc", SLOW_JOB), "--wait"],
-        stdout=tty, stderr=tty,
+        stdout=tty, stderr=tty, env={**os.environ, "TERM": "xterm"},
     )
     os.close(tty)
     out = b""

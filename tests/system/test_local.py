@@ -83,6 +83,7 @@ def log_of(m):
     return (m.folder / "edmd-jobs.log").read_text()
 
 
+@pytest.mark.needs("a network of its own")
 def test_without_any_network_all_of_one_host_goes_on(lonely):
     """No multicast, no route, no loopback: submit, watch, record, stop."""
     m = lonely
@@ -105,6 +106,7 @@ def test_without_any_network_all_of_one_host_goes_on(lonely):
     assert len(said) == 1 and "ip route add 224.0.0.0/4" in said[0], said
 
 
+@pytest.mark.needs("a network of its own")
 def test_the_python_package_needs_no_network_either(lonely):
     code = ("import edm, sys; m = edm.Client(sys.argv[1], timeout=20); "
             "print(m.submit(b'G1 X1 F600\\nM30\\n', 'a.ngc').id, "
@@ -118,6 +120,7 @@ def test_the_python_package_needs_no_network_either(lonely):
     assert len(p.stdout.split()) == 2
 
 
+@pytest.mark.needs("a network of its own")
 def test_multicast_that_comes_later_is_joined(tmp_path):
     """As at boot, when the network is up later than the service."""
     m = rig.Machine(tmp_path)
@@ -154,6 +157,31 @@ def test_status_and_events_come_by_the_socket_and_answers_only_there(machine):
     assert other.acks == [] and lcm.acks == []
     assert lcm.ask("queue").code == 0
     assert lcm.acks and other.acks == []
+
+
+def test_who_asks_over_the_network_is_answered_there(machine):
+    """Whoever asked by the socket at the same moment."""
+    near, far = Local(machine.name), machine.client
+    for client in (near, far):
+        assert client.ask("queue").code == 0
+    os.kill(machine.jobs.pid, signal.SIGSTOP)
+    near.send_command("queue")
+    seq = far.send_command("queue")
+    os.kill(machine.jobs.pid, signal.SIGCONT)
+    far.heard(lambda: far.acks_to(seq))
+    assert far.ask("queue").code == 0
+
+
+def test_who_repeats_a_packet_of_another_gets_no_answers_of_his(machine):
+    near, far = Local(machine.name), machine.client
+    m = rig.command_t()
+    m.client, m.seq, m.verb = far.name, far.number(), "queue"
+    packet = far.seal("COMMAND", m.encode()).encode()
+    far.publish_raw("COMMAND", packet)
+    far.heard(lambda: far.acks_to(m.seq))
+    near.publish_raw("COMMAND", packet)
+    near.hear(0.5)
+    assert far.ask("queue").code == 0
 
 
 def test_who_does_not_read_stops_nobody(machine):

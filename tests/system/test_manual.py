@@ -124,7 +124,8 @@ def test_doctor_finds_the_living_and_mends_the_missing(machine, tmp_path):
     assert str(machine.edmd.pid) in by["edmd"]["found"]
     assert by["edmd-jobs"]["verdict"] == "good"
     assert by["shared memory"]["verdict"] == "good"
-    assert by["multicast route"]["verdict"] == "good"
+    # Without a route clients of the host still have a socket.
+    assert by["multicast route"]["verdict"] in ("good", "unused")
     for r in rows:
         assert bool(r["mend"]) == (r["verdict"] == "lacking")
     r = machine.ctl("--timeout", "0.3", "--machine", "nobody", "doctor")

@@ -32,7 +32,7 @@ class Gated(rig.Machine):
         with open(self.folder / "edmd.log", "ab") as log:
             return subprocess.Popen(
                 [*self._command(program), *args], stdout=log, stderr=log,
-                env={**os.environ, "LD_PRELOAD": str(self.shim),
+                env={**os.environ, "LD_PRELOAD": rig.preload(self.shim),
                      "EDM_GATE": str(self.gate)})
 
     def is_asked(self):
@@ -78,6 +78,8 @@ def select(tmp_path, machine):
     subprocess.run(
         ["cc", "-D_GNU_SOURCE", "-o", tool, HERE / "select_job.c",
          *(ROOT / "daemon/shm").glob("*.c"), ROOT / "common/names.c",
+         ROOT / "common/places.c",
+         ROOT / "common/thread.c",
          *(f"-I{ROOT / d}" for d in ("daemon/shm", "daemon/words", "common",
                                      "libinterp/core/include"))], check=True)
     return lambda n: subprocess.run(

@@ -214,8 +214,7 @@ def test_the_record_of_another_job_is_not_gone_on_with(idle, other):
     at = m.store / f"{m.name}.db"
     with sqlite3.connect(at) as db:
         ((record,),) = db.execute("SELECT at FROM resume")
-    for end in ("db", "db-wal", "db-shm", "place"):
-        (m.store / f"{m.name}.{end}").unlink(missing_ok=True)
+    c = m.forget_store()
     interrupted(m, c, 1, other)
     die(m)
     with sqlite3.connect(at) as db:

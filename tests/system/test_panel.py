@@ -7,10 +7,12 @@ docs/panel.md has a table of the OWASP ASVS requirements that these tests show.
 import concurrent.futures
 import json
 import os
+import pathlib
 import socket
 import subprocess
 import time
 
+import numpy as np
 import panel
 import pytest
 import rig
@@ -63,6 +65,40 @@ def test_a_text_that_is_understood_has_a_path_to_draw(p, me):
     assert status == 200 and len(head) % 8 == 0
     assert len(path) == len(head) + told["points"] * (8 + 12 + 4 + 1)
     assert told["max"][2] - told["min"][2] == pytest.approx(2.4)
+
+
+@pytest.mark.parametrize("guides", ["relative", "absolute"])
+def test_the_upper_guide_is_drawn_where_it_is(tmp_path, guides):
+    """Faces of 2 degrees and guides 100 mm apart, whichever way U V count."""
+    ini = tmp_path / "m.ini"
+    ini.write_text(pathlib.Path("examples/wire.ini").read_text().replace(
+        "guides = relative ", f"guides = {guides} "))
+    job = tmp_path / "a.ngc"
+    job.write_text("""G90 F5 H1=0.15
+G0 X105 Y-5
+G41 H1 G51 A2
+G1 X105 Y0
+X100
+Y10
+X110
+Y0
+X105
+G40 G50 Y-5
+M2
+""")
+    with job.open() as text:
+        out = subprocess.run([rig.BUILD / "edm-panel", "--work", "check",
+                              "--config", ini, "--file-name", "a.ngc"],
+                             stdin=text, capture_output=True,
+                             timeout=60).stdout
+    end = out.index(b"\n") + 1
+    told = json.loads(out[:end])
+    n = told["points"]
+    low = np.frombuffer(out, np.float32, 3 * n, end + 8 * n).reshape(n, 3)
+    up = np.frombuffer(out, np.float32, 2 * n, end + 24 * n).reshape(n, 2)
+    off = np.abs(up - low[:, :2] - np.array(told["origin"][:2]))
+    assert told["upper"]
+    assert off.max() == pytest.approx(100 * np.tan(np.radians(2)), abs=0.01)
 
 
 def test_a_job_runs_from_upload_to_end(p, me):
@@ -483,10 +519,8 @@ def test_a_program_that_explodes_is_ended_in_its_own_process(p, me):
     assert resident_kb(p) < 100000
 
 
+@pytest.mark.needs("another user")
 def test_another_user_of_the_host_only_looks_on(p):
-    """Root of this test may become nobody; who may not, cannot show it."""
-    if os.getuid() != 0:
-        pytest.skip("needs root, to be another user")
     code = ("import http.client,json,sys; c=http.client.HTTPConnection("
             f"'127.0.0.1',{p.port}); c.request('GET','/api/session'); "
             "print(json.load(c.getresponse())['role'])")
@@ -496,10 +530,9 @@ def test_another_user_of_the_host_only_looks_on(p):
     assert done.stdout.strip() == "viewer", done.stderr
 
 
+@pytest.mark.needs("another user")
 def test_a_cookie_serves_its_own_user_alone(p, me):
     """A browser sends it to every port of the host."""
-    if os.getuid() != 0:
-        pytest.skip("needs root, to be another user")
     code = ("import http.client,json,sys; c=http.client.HTTPConnection("
             f"'127.0.0.1',{p.port}); c.request('GET','/api/session',"
             f"headers={{'Cookie': {me.cookie!r}}}); "
@@ -526,10 +559,9 @@ while got := s.recv(4096):
 """
 
 
+@pytest.mark.needs("another user")
 def test_another_user_on_the_port_of_an_operator_only_looks_on(p):
     """Root has connections to elsewhere from that very port."""
-    if os.getuid() != 0:
-        pytest.skip("needs root, to be another user")
     for _ in range(3):
         held, own = [], panel.free_port()
         for _ in range(12):

@@ -6,6 +6,8 @@ docs/panel.md has a table of the OWASP ASVS requirements that these tests show.
 
 import json
 import os
+import pathlib
+import pwd
 import socket
 import ssl
 import subprocess
@@ -13,6 +15,7 @@ import subprocess
 import panel
 import pytest
 import rig
+from websockets.exceptions import ConnectionClosed
 
 
 def certificate(folder):
@@ -90,6 +93,13 @@ def test_a_viewer_looks_on(far):
     # ticket arrives while the request is written, and Python's ssl, which has
     # no lock before 3.13, may then lose the request.
     context.maximum_version = ssl.TLSVersion.TLSv1_2
+    # A frame that is not masked is refused over TLS, too.
+    with ben.live(ssl=context) as live:
+        live.take()
+        live.ws.socket.sendall(b"\x81\x02{}")
+        with pytest.raises(ConnectionClosed):
+            while True:
+                live.take()
     with ben.live(ssl=context) as live:
         live.where(lambda s: s.get("daemon") == "ok")
         assert live.ask("queue")["code"] == 0
@@ -127,6 +137,83 @@ def test_who_is_changed_has_to_log_in_again(far):
     assert carl.post("/api/check", b"M30\n")[0] == 200
     add_user(far, "carl", "viewer")
     rig.until(lambda: carl.post("/api/check", b"M30\n")[0] == 401)
+
+
+def test_one_s_own_login_frees_no_guesses(far):
+    """Who has an account guesses the words of others no faster."""
+    wrong = [login(far, "anna", f"guess number {i}")[0] for i in range(3)]
+    assert login(far, "ben", "ben has a long word")[0] == 200
+    wrong += [login(far, "anna", f"guess number {i}")[0] for i in range(3)]
+    assert wrong == [403] * 5 + [429]
+    assert login(far, "ben", "ben has a long word")[0] == 429
+    # The minute is over: as many as before.
+    far.kill()
+    far.start_panel()
+
+
+AS_ROOT = """
+import os, subprocess, sys
+config, panel = sys.argv[1:]
+subprocess.run(["mount", "--bind", f"{os.path.dirname(config)}/passwd",
+                "/etc/passwd"], check=True)
+subprocess.run([panel, "--config", config, "--add-user", "dora", "operator"],
+               input=b"dora has a long word", check=True)
+"""
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="needs root")
+def test_what_root_writes_the_service_can_read(tmp_path):
+    p = panel.Panel(tmp_path, more=f"users = {tmp_path}/users\n")
+    passwd = pathlib.Path("/etc/passwd").read_text().replace("\n\n", "\n")
+    (tmp_path / "passwd").write_text("".join(
+        line + "\n" for line in passwd.splitlines()
+        if not line.startswith("edm-panel:"))
+        + "edm-panel:x:4711:4712::/nonexistent:/usr/sbin/nologin\n")
+    for found in (None, 0o600):      # a new file; that of an earlier version
+        done = subprocess.run(
+            ["unshare", "--mount", "/usr/bin/python3", "-c", AS_ROOT,
+             str(p.machine.config), str(rig.BUILD / "edm-panel")],
+            text=True, capture_output=True)
+        assert done.returncode == 0, done.stderr
+        st = os.stat(tmp_path / "users")
+        assert (st.st_uid, st.st_gid, st.st_mode & 0o777) == (0, 4712, 0o640)
+        os.chown(tmp_path / "users", 0, 0)
+        os.chmod(tmp_path / "users", 0o600)
+    p.machine.close()
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="needs root")
+def test_without_the_service_s_user_the_folder_says_whose_it_is(tmp_path):
+    p = panel.Panel(tmp_path, more=f"users = {tmp_path}/users\n")
+    os.chown(tmp_path, 4713, 4714)
+    add_user(p, "dora", "operator")
+    st = os.stat(tmp_path / "users")
+    service = [x for x in pwd.getpwall() if x.pw_name == "edm-panel"]
+    assert st.st_uid == 4713
+    assert st.st_gid == (service[0].pw_gid if service else 4714)
+    p.machine.close()
+
+
+@pytest.mark.parametrize("how", ["unreadable", "gone", "damaged"])
+def test_users_that_cannot_be_read_are_told(far, how):
+    """It is nobody's wrong password."""
+    users = far.folder / "users"
+    text = users.read_text()
+    users.unlink()
+    if how == "damaged":
+        users.write_text("anna operator\n" + text)
+    elif how == "unreadable":
+        users.mkdir()
+    try:
+        status, got = login(far, "anna", "anna has a long word")
+        assert status == 503 and "file of users" in got["found"], got
+        assert f"nobody can log in: {users}: " in far.log()
+    finally:
+        users.rmdir() if how == "unreadable" else users.unlink(
+            missing_ok=True)
+        users.write_text(text)
+        users.chmod(0o600)
+    assert login(far, "anna", "anna has a long word")[0] == 200
 
 
 def test_guessing_is_slowed_down(far):

@@ -36,7 +36,7 @@ class Failing(rig.Machine):
     def _start(self, program, *args):
         env = dict(os.environ)
         if program == "edmd-jobs":
-            env |= {"LD_PRELOAD": str(self.shim),
+            env |= {"LD_PRELOAD": rig.preload(self.shim),
                     "EDM_DISK": str(self.store),
                     "EDM_DISK_ERRNO": str(self.errno)}
         with open(self.folder / f"{program}.log", "ab") as log:
@@ -148,6 +148,7 @@ def test_a_disk_that_fails_in_a_cut_stops_nothing(failing, number):
     c.status_where(lambda s: s.daemon == "ok")
     assert c.job("cut")["state"] == "done"
     # Killed while it was being loaded, it waits for a start.
+    rig.until(lambda: c.job("behind")["state"] in ("ready", "done"))
     if c.job("behind")["state"] != "done":
         c.ask("start")
     c.job_where("behind", "done")
@@ -263,14 +264,55 @@ def test_a_damaged_store_is_set_aside_and_told(failing):
     assert c.submit(QUICK_JOB, "new").code == 0
 
 
+@pytest.mark.parametrize("how", ["emptied", "removed"])
+def test_a_store_that_is_gone_is_told_and_nothing_starts(machine, how):
+    """Its work offsets are gone, too: who does not know that cuts elsewhere."""
+    m, c = machine, machine.client
+    assert m.ctl("offset", "G54", "X=3").returncode == 0
+    assert m.end("jobs") == 0
+    for path in m.store.glob("*.db*"):
+        path.unlink()
+    if how == "emptied":
+        (m.store / f"{m.name}.db").touch()
+    m.start_jobs()
+    c.heard(lambda: [e for e in c.events if e.outcome == "mended" and
+                     "work offsets" in e.text])
+    assert c.submit(QUICK_JOB, "new").code == 0
+    c.job_where("new", "ready")
+    c.hear(1.5)
+    assert c.job("new")["state"] == "ready", "it began by itself"
+    assert c.ask("start").code == 0
+    c.job_where("new", "done")
+
+
+@pytest.mark.parametrize("how", ["link", "fifo"])
+@pytest.mark.parametrize("end", ["db", "db-wal", "lock", "place", "key",
+                                 "machine-key", "db.probe"])
+def test_a_link_or_fifo_in_the_store_is_not_followed(idle, end, how):
+    m = idle
+    m.store.mkdir()
+    elsewhere = m.folder / "elsewhere"
+    elsewhere.write_text("of somebody else\n")
+    elsewhere.chmod(0o644)
+    at = m.store / f"{m.name}.{end}"
+    os.mkfifo(at) if how == "fifo" else at.symlink_to(elsewhere)
+    m.start_jobs()
+    if end == "db.probe":       # it is no file that has to be there
+        rig.until(lambda: "machine test" in m.log("edmd-jobs"))
+    else:
+        assert m.jobs.wait(20) == 78
+        assert f"{at} is a symbolic link, or no regular" in m.log("edmd-jobs")
+    assert elsewhere.read_text() == "of somebody else\n"
+    assert elsewhere.stat().st_mode & 0o777 == 0o644
+
+
 def test_what_a_store_began_anew_has_is_not_taken_for_what_ended(machine):
     """The same number and the same text, sent later, is another job."""
     m, c = machine, machine.client
     assert c.submit(QUICK_JOB, "before").code == 0
     c.job_where("before", "done")
     assert m.end("jobs") == 0
-    for path in m.store.glob("*.db*"):
-        path.unlink()
+    c = m.forget_store()
     m.start_jobs()
     c.status_where(lambda s: s.daemon == "ok")
     assert c.submit(QUICK_JOB, "after", hold=True).code == 0

@@ -3,10 +3,13 @@
 
 import hashlib
 import math
+from pathlib import Path
 
 import pytest
 import rig
 from rig import SLOW_JOB
+
+ROOT = Path(__file__).resolve().parents[2]
 
 TABLE = """
 condition, servo_v [V], on_us [us]
@@ -209,3 +212,18 @@ def test_a_store_of_the_version_before_is_taken_over(idle):
     old = idle.client.job("old")
     assert (old["state"], old["tech_sha256"], old["changes"]) == (
         "done", "", [])
+
+
+def test_a_submit_is_refused_for_what_does_not_reach_the_generator(tmp_path):
+    """By the service alone: there are no lines here for an edmd."""
+    gpio = (ROOT / "examples/machine-gpio.ini").read_text()
+    text = gpio.replace("name = edm", "name = {name}")
+    with rig.Machine(tmp_path, text + "\n[jobs]\nstore = {store}\n"
+                     "[tech]\ntable = shop.tech\n") as m:
+        (tmp_path / "shop.tech").write_text(TABLE)
+        m.start_jobs()
+        a = m.client.submit(JOB, "job")
+        assert a.code != 0
+        assert "shop.tech:3:1: error: C100: on_us 8 us does not reach the " \
+            "generator" in a.reason
+        assert "[generator] by_hand = on_us" in a.reason

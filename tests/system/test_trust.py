@@ -9,6 +9,7 @@ import json
 import os
 import pathlib
 import random
+import shutil
 import signal
 import socket
 import sqlite3
@@ -16,6 +17,7 @@ import stat
 import struct
 import subprocess
 import sys
+import tempfile
 import time
 
 import lcm
@@ -189,7 +191,7 @@ def test_status_event_and_ack_of_another_key_are_not_believed(machine):
 
 @pytest.mark.parametrize("what", ["lost", "wide", "foreign", "unreadable",
                                   "cut", "unknown"])
-def test_a_bad_key_file_is_told_with_what_mends_it(machine, what):
+def test_a_bad_key_file_is_told_with_what_mends_it(machine, what, request):
     path = machine.folder / "some.key"
     path.write_text(pathlib.Path(machine.client.key).read_text())
     path.chmod(0o600)
@@ -198,7 +200,7 @@ def test_a_bad_key_file_is_told_with_what_mends_it(machine, what):
         "foreign": "--machine other", "unreadable": "usermod -aG edm",
         "cut": "cut short", "unknown": "edmctl keys add",
     }[what]
-    more = {}
+    ctl, more = BUILD / "edmctl", {}
     if what == "lost":
         path.unlink()
     elif what == "wide":
@@ -215,10 +217,14 @@ def test_a_bad_key_file_is_told_with_what_mends_it(machine, what):
         if os.geteuid() != 0:
             path.chmod(0)
         else:
-            more["preexec_fn"] = lambda: (os.setgid(65534), os.setuid(65534))
-            for folder in (machine.folder, *machine.folder.parents[:2]):
-                folder.chmod(0o755)
-    r = machine.ctl("--key", str(path), "hold", **more)
+            # Its own tree and folder may be closed to others.
+            place = pathlib.Path(tempfile.mkdtemp())
+            request.addfinalizer(lambda: shutil.rmtree(place))
+            place.chmod(0o755)
+            ctl = shutil.copy(BUILD / "edmctl", place)
+            path = pathlib.Path(shutil.copy(path, place))
+            more = {"user": 65534, "group": 65534, "extra_groups": []}
+    r = machine.ctl("--key", str(path), "hold", program=ctl, **more)
     assert r.returncode == 77, r.stderr
     assert wanted in r.stderr
     assert machine.client.status().state == "idle"
@@ -303,12 +309,12 @@ def test_a_unicast_packet_is_not_even_read(machine):
                       c.seal("COMMAND", command(c, "estop").encode()).encode())
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
         for _ in range(20):
-            s.sendto(packet, ("127.0.0.1", 7667))
+            s.sendto(packet, ("127.0.0.1", rig.GROUP[1]))
     stays(c)
     # The same packet, to the group, is a good one.
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
         s.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
-        s.sendto(packet, ("239.255.76.67", 7667))
+        s.sendto(packet, rig.GROUP)
     c.status_where(lambda s: s.fault == "e-stop")
 
 
@@ -409,7 +415,7 @@ def test_strange_packets_end_neither_clients_nor_the_service(machine):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
             s.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
             for i, p in enumerate(strange_packets(c, random.Random(5), 20000)):
-                s.sendto(p, ("239.255.76.67", 7667))
+                s.sendto(p, rig.GROUP)
                 if i % 100 == 0:
                     time.sleep(0.005)
         assert machine.ctl("queue").returncode == 0

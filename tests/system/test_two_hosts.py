@@ -25,6 +25,8 @@ from rig import BUILD, NULL_MACHINE, command_t
 
 HOSTILE = int(os.environ.get("EDM_HOSTILE", "5000"))
 HERE, THERE = "10.99.7.1", "10.99.7.2"
+pytestmark = pytest.mark.needs("a network of its own")
+
 GROUP = ("239.255.76.67", 7667)
 
 SENDER = """

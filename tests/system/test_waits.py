@@ -300,6 +300,7 @@ exec sleep 1000
 """
 
 
+@pytest.mark.needs("mounts of its own")
 def test_a_stranger_s_file_blocks_no_start(idle):
     """/dev/shm/edmd is made when the host boots; what a stranger then makes in
     /dev/shm is not looked at."""

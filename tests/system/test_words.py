@@ -61,6 +61,7 @@ def test_the_machine_may_come_from_the_environment(machine):
 # -- The network
 
 
+@pytest.mark.needs("a network of its own")
 @pytest.mark.parametrize("named", [True, False])
 def test_no_multicast_is_told_in_our_words_alone(machine, named):
     """Also to somebody on whose host no service was started yet."""

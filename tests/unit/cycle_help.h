@@ -157,7 +157,7 @@ static inline void check_always(const struct rig *r)
 	assert_true(r->c.state > STATE_STAY && r->c.state < CYCLE_NSTATES);
 	assert_int_equal(r->out.power,
 			 sparking_state(r->c.state) && !r->c.job.power_off &&
-			 !walk_positions(&r->c));
+			 !walk_positions(&r->c) && r->c.asking.in_force);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const int32_t at = r->c.out.target[i];
 		const int64_t step = (int64_t)at - r->path_before[i];
@@ -179,6 +179,7 @@ static inline void step(struct rig *r, double gap_v)
 	memcpy(r->path_before, r->c.out.target, sizeof(r->path_before));
 	r->was = r->c.state;
 	r->in.gap_v = gap_v;
+	memcpy(r->in.stands_at, r->out.target, sizeof(r->out.target));
 	cycle_step(&r->c, &r->in, &r->out);
 	check_always(r);
 }

@@ -66,7 +66,7 @@ static inline void sense(struct bench *b)
 		b->in.index |= passed(b, i) ? 1u << i : 0;
 		b->in.limit |= at < b->limit_min || at > b->limit_max ?
 			       1u << i : 0;
-		b->in.actual[i] = at;
+		b->in.actual[i] = b->in.stands_at[i] = at;
 	}
 }
 

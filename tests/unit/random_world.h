@@ -373,6 +373,7 @@ static inline void random_world(struct rig *r, uint64_t *s)
 	r->in.busy = rnd(s) % 50 < 5;
 	if (rnd(s) % 500 == 0)
 		random_law(&r->c.gap, s);
+	r->in.generator.trouble = rnd(s) % 8000 == 0;
 	if (rnd(s) % 500 == 0)
 		random_jump(&r->c.jump, s);
 	if (rnd(s) % 1000 == 0)

@@ -11,6 +11,7 @@
  * on while an axis is not under power and in its place.
  */
 #include "can402_bus.h"
+#include "generator_own.h"
 
 #include <linux/can.h>
 #include <math.h>
@@ -55,7 +56,7 @@ struct rig {
 	struct io_machine m;
 	struct io_inputs in;
 	struct io_outputs out;
-	int fd;
+	int fd, generator_fd;
 	struct drive_peer p[NDRIVES];
 	uint64_t s;
 	uint32_t unplaced;		/* as the cycle keeps it */
@@ -336,6 +337,8 @@ static void operate(struct rig *r)
 	for (int i = 0; i < NDRIVES && !r->begun && !r->in.starting; i++)
 		r->p[i].gone = false;
 	r->begun = r->begun || !r->in.starting;
+	if (r->in.axes_off && !r->in.starting)
+		memcpy(r->out.target, r->in.stands_at, sizeof(r->out.target));
 	r->out.reset = false;
 	if (r->in.trouble != IO_WELL) {
 		r->out.enable = false;
@@ -393,11 +396,16 @@ static void make(struct rig *r, uint64_t seed)
 	r->c.can402.resync_mm = RESYNC * 1e-3;
 	r->c.can402.sdo_ms = 50;
 	r->c.can402.gap_id = GAP;
-	r->c.can402.generator_id = GENERATOR;
+	r->c.generator.interface = GENERATOR_CAN;
+	r->c.generator.can_id = GENERATOR;
 	assert_int_equal(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0,
 				    fd), 0);
 	assert_int_equal(can402_attach(&r->m, &r->c, fd[0]), 0);
 	r->fd = fd[1];
+	assert_int_equal(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0,
+				    fd), 0);
+	assert_non_null(generator_attach(&r->m, &r->c, fd[0]));
+	r->generator_fd = fd[1];
 	for (int i = 0; i < NDRIVES; i++) {
 		r->p[i].place = 1000 * i;
 		power_on(r, &r->p[i]);
@@ -418,7 +426,8 @@ static void period(struct rig *r)
 	while (r->m.note(r->m.self, line, sizeof(line)))
 		if (getenv("EDM_TRACE"))
 			printf("%ld: %s\n", r->period, line);
-	while (read(r->fd, &f, sizeof(f)) == sizeof(f))
+	while (read(r->fd, &f, sizeof(f)) == sizeof(f) ||
+	       read(r->generator_fd, &f, sizeof(f)) == sizeof(f))
 		on_frame(r, &f);
 	judge(r);
 	for (int i = 0; i < NDRIVES; i++)
@@ -450,6 +459,7 @@ static void whatever_they_do_nothing_moves_unplaced_or_sparks(void **state)
 			       r.seen.resets);
 		assert_true(r.seen.sparks > 100 && r.seen.homed > 3);
 		r.m.close(r.m.self);
+		close(r.generator_fd);
 		close(r.fd);
 	}
 }

@@ -180,9 +180,47 @@ static const struct refusal refusals[] = {
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n"
 	  "gap_id = 389\n", 5, 0, "can402.gap_id 389, which is in use",
 	  "384 to 1407" },
-	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n"
-	  "generator_id = 1500\n", 5, 0, "can402.generator_id 1500",
-	  "384 to 1407" },
+	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.Z]\n"
+	  "brake = free\n[generator]\ninterface = can\ncan_id = 1500\n", 9, 0,
+	  "generator.can_id 1500", "384 to 1407" },
+	{ "[generator]\ninterface = can\n", 2, 0,
+	  "generator.interface and machine.backend do not agree",
+	  "sim with backend sim" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "peak_a = lines 20 21 weights 3\n", 5, 0,
+	  "has fewer weights than lines", "lines 20 21 26 weights 3 6 12" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "on_us = lines 20 21 codes 2 4 8 16 32\n", 5, 0,
+	  "has more codes than its lines make", "codes 2 4 8 16" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "on_us = lines 20 21\n", 5, 0, "has neither weights nor codes", "" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "peak_a = lines 20 21 weights 600 900\n", 5, 0,
+	  "makes a value out of the field's range", "" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "peak_a = lines 20 21 weights 3 6\npump = line 21\n", 6, 0,
+	  "generator.pump and generator.peak_a are both line 21",
+	  "a line of its own" },
+	{ "[machine]\nbackend = null\n[gpio]\nspark = 7\n[generator]\n"
+	  "interface = lines\npump = line 7\n", 7, 0,
+	  "generator.pump and gpio.spark are both line 7",
+	  "a line of its own" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "spark = line 7\n", 5, 0,
+	  "generator.spark is a line and there is no gpio.watchdog",
+	  "gpio.watchdog_by" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
+	  "peak_a = can 100 byte 2 bits 16\non_us = can 100 byte 3\n", 6, 0,
+	  "generator.on_us and generator.peak_a have bits of frame 100",
+	  "a place of its own" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
+	  "can_id = 100\niso = can 100 byte 1 bit 3\n", 6, 0,
+	  "generator.iso is in byte 1 of frame 100", "another byte" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
+	  "peak_a = can 100 byte 7 bits 16\n", 5, 0,
+	  "goes beyond the eighth byte", "can ID byte N" },
+	{ "[machine]\nbackend = null\n[generator]\nby_hand = on_us amps\n", 4,
+	  0, "generator.by_hand has \"amps\"", "peak_a on_us off_us" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
 	  "drive_increments = 0\n", 6, 0, "axis.X.drive_increments 0",
 	  "not 0" },
@@ -358,7 +396,7 @@ static void a_damaged_file_is_read_or_refused_with_its_line(void **state)
 {
 	struct machine_config c;
 	struct interp_diag d;
-	char *whole, text[65536];
+	char *whole, text[131072];
 	int refused = 0;
 
 	(void)state;

@@ -52,7 +52,7 @@ static uint64_t walk(const struct pulser_config *pc, bool waits,
 
 static void waiting_for_pulses_costs_no_feed(void **state)
 {
-	const struct pulser_config c = { 2, 2, 1, 1, false };
+	const struct pulser_config c = { 2, 2, 1, 1, false, 0, 0, 0 };
 	int32_t free_end[INTERP_NAXES], end[INTERP_NAXES];
 	const uint64_t without = walk(&c, false, free_end);
 	const uint64_t with = walk(&c, true, end);
@@ -85,7 +85,7 @@ static void it_takes_no_point_while_the_machine_is_busy(void **state)
 
 static void no_faster_than_pulses_can_follow(void **state)
 {
-	const struct pulser_config c = { 5, 5, 5, 5, false };
+	const struct pulser_config c = { 5, 5, 5, 5, false, 0, 0, 0 };
 	int32_t free_end[INTERP_NAXES], end[INTERP_NAXES];
 
 	(void)state;

@@ -218,7 +218,8 @@ static void words_behind_the_end_are_noted(void **state)
 		{ "%\nG0 X1.\nM2\n% (end)\nrubbish\n", "" },
 		{ "%\nG0 X1.\nM2\nrubbish\n", "4 nothing behind the e|" },
 		{ "%\nG0 X1.\nM2\n%junk\nrubbish\n",
-		  "5 nothing behind the e|" },
+		  "4 nothing behind the e|" },
+		{ "%title\nG0 X1.\nM2\n", "1 % begins the text; w|" },
 	};
 
 	(void)state;

@@ -70,9 +70,27 @@ static const char skd2[] =
 	"G01X1000Y0\nM02\n\nN0001\nG01X2000Y500\nG41\n"
 	"G02X4000Y500I1000J0\nG50\nG40\nG01X1000Y0\nM99\n";
 
+/* A table that says of the columns of definitions that they are not used. */
+static struct compiled ready_with_columns(const char *dialect)
+{
+	static const char text[] =
+		"condition, servo_v\nC999, 20\n"
+		"inline C = - - - - - - - - - - -\ninline E = - - - - - - -\n"
+		"inline S = - - - - - - - - - - - - -\n";
+	static struct interp_tech_table *t;
+	struct compiled c = compile_ready(dialect);
+	struct interp_diag d;
+
+	if (!t)
+		assert_int_equal(interp_tech_read(&t, text, sizeof(text) - 1,
+						  &d), 0);
+	c.o.nc.tech = t;
+	return c;
+}
+
 static void skd2_counts_micrometres_and_calls_by_n(void **state)
 {
-	struct compiled c = compile_ready("skd2");
+	struct compiled c = ready_with_columns("skd2");
 
 	(void)state;
 	compile(&c, skd2);
@@ -102,7 +120,7 @@ static const char sodick[] =
 
 static void sodick_ends_blocks_by_semicolons(void **state)
 {
-	struct compiled c = compile_ready("sodick");
+	struct compiled c = ready_with_columns("sodick");
 
 	(void)state;
 	compile(&c, sodick);
@@ -122,7 +140,7 @@ static const char chmer[] =
 
 static void chmer_calls_conditions_by_s(void **state)
 {
-	struct compiled c = compile_ready("chmer");
+	struct compiled c = ready_with_columns("chmer");
 
 	(void)state;
 	compile(&c, chmer);
@@ -279,6 +297,10 @@ static const struct bad {
 	{ "skd2", "G51 A1.5\nM02", 1, 1, "G51 on a machine without" },
 	{ "skd2", "G52\nM02", 1, 1, "G52 on a machine without" },
 	{ "skd2", "E001=\nM02", 1, 1, "a definition without a number" },
+	{ "skd2", "E001=60 6\nE001\nG1 X1\nM02", 2, 1,
+	  "E001, which the program defines by numbers that mean nothing here" },
+	{ "sodick-wire", "C001 = 60 6\nG1 X1. C001\nM02", 2, 8,
+	  "C001, which the program defines" },
 	{ "skd2", "H001= X\nM02", 1, 1, "a definition without a number" },
 	{ "skd2", "H1000=5\nM02", 1, 1, "H1000 is out of range" },
 	{ "skd2", "H001=500.0\nM02", 1, 1, "an offset of 500 mm" },

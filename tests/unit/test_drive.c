@@ -41,7 +41,7 @@ static struct drive_config config(void)
 		.node = NODE, .master = 127, .increments = 10, .pulses = 1,
 		.period_us = 2000, .heartbeat_ms = 100, .beat_cycles = 125,
 		.answer_cycles = 50, .missing_max = 2, .following_max = 50,
-		.slew_increments = 40, .limited_cycles = 50,
+		.limited_cycles = 50,
 		.write = { { 0x6007, 0, 2, 3, true } }, .nwrites = 1,
 	};
 }
@@ -232,7 +232,8 @@ static void enable(struct rig *r)
 	drive_aim(&r->d, DRIVE_GO_ON);
 	run(r, 20, 0);
 	assert_int_equal(r->d.state, DRIVE_ENABLED);
-	assert_true(r->d.arrived);
+	assert_true(r->d.led);
+	r->d.joined = true;		/* as the master does */
 }
 
 static void a_drive_is_brought_up_as_cia_402_wants(void **state)
@@ -294,11 +295,9 @@ static void it_follows_to_the_increment(void **state)
 	assert_int_equal(r.d.trouble, DRIVE_WELL);
 }
 
-static void one_that_was_pushed_goes_back_slowly(void **state)
+static void one_that_was_pushed_stays_there_until_it_joins(void **state)
 {
 	struct rig r;
-	int32_t before;
-
 	(void)state;
 	enable(&r);
 	drive_aim(&r.d, DRIVE_GO_OFF);
@@ -306,14 +305,13 @@ static void one_that_was_pushed_goes_back_slowly(void **state)
 	r.p.actual = r.p.target = r.p.latched += 400;
 	run(&r, 5, 0);
 	drive_aim(&r.d, DRIVE_GO_ON);
-	before = r.p.actual;
-	for (int i = 0; i < 40; i++) {
-		run(&r, 1, 0);
-		assert_true(abs(r.p.actual - before) <= 40);
-		before = r.p.actual;
-	}
-	assert_true(r.d.arrived);
-	assert_int_equal(r.p.actual, 123456);
+	run(&r, 40, 0);
+	assert_true(r.d.led && !r.d.joined);
+	assert_int_equal(r.p.actual, 123456 + 400);
+	assert_int_equal(drive_stands_at(&r.d), 40);
+	r.d.joined = true;
+	run(&r, 3, 40);
+	assert_int_equal(r.p.actual, 123456 + 400);
 	assert_int_equal(r.d.trouble, DRIVE_WELL);
 }
 
@@ -690,7 +688,10 @@ static void a_restart_loses_the_place_unless_it_is_absolute(void **state)
 		assert_int_equal(r.d.lost, !absolute);
 		drive_aim(&r.d, DRIVE_GO_ON);
 		run(&r, 50, 0);
-		/* It goes back to its place, or does not move at all. */
+		assert_int_equal(r.p.actual, 37);
+		/* It goes where it is sent, or does not move at all. */
+		r.d.joined = r.d.led;
+		run(&r, 50, 0);
 		assert_true(absolute ? r.p.actual > 37 : r.p.actual == 37);
 	}
 }
@@ -815,8 +816,59 @@ static void bits_and_mode_are_watched_in_every_answer(void **state)
 	run(&r, 40, 0);
 	assert_int_equal(r.d.trouble, DRIVE_WELL);
 	assert_int_equal(r.d.warnings, 1);
-	run(&r, 40, 0);
-	assert_int_equal(r.d.trouble, DRIVE_LIMITED);
+	run(&r, 140, 0);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+}
+
+/* An emergency while it was set up is over; one answer is lost later. */
+static void an_emergency_that_has_ended_is_no_fault_later(void **state)
+{
+	const struct can_msg came = { .id = CAN_EMCY + NODE, .len = 8,
+				      .data = { 0x20, 0x31 } };
+	const struct can_msg ended = { .id = CAN_EMCY + NODE, .len = 8 };
+
+	(void)state;
+	for (int i = 0; i < 2; i++) {
+		struct rig r;
+
+		if (i == 0) {
+			enable(&r);
+			drive_receive(&r.d, &came);
+			drive_receive(&r.d, &ended);
+		} else {
+			make(&r);
+			run(&r, 5, 0);
+			assert_true(r.d.phase < DRIVE_RUNNING);
+			drive_receive(&r.d, &came);
+			run(&r, 80, 0);
+			assert_int_equal(r.d.phase, DRIVE_RUNNING);
+		}
+		assert_int_equal(r.d.emergency, i ? 0x3120 : 0);
+		drive_sync(&r.d);
+		drive_sync(&r.d);
+		assert_int_equal(r.d.trouble, DRIVE_WELL);
+	}
+}
+
+/* An axis on its limit goes away from it as slowly as it likes. */
+static void a_target_is_clipped_only_if_the_axis_does_not_go_there(void **state)
+{
+	for (int away = 0; away < 2; away++) {
+		struct rig r;
+
+		(void)state;
+		enable(&r);
+		r.p.status = 0x18a7;
+		for (int i = 1; i <= 80; i++) {
+			const int32_t to = i < 30 ? i : 30;
+
+			run(&r, 1, away ? -i : to);
+			if (!away)
+				r.p.actual = r.p.latched = 123456;
+		}
+		assert_int_equal(r.d.trouble, away ? DRIVE_WELL :
+						     DRIVE_LIMITED);
+	}
 }
 
 static void a_reset_writes_the_mode_again(void **state)
@@ -837,7 +889,7 @@ static void a_reset_writes_the_mode_again(void **state)
 	drive_aim(&r.d, DRIVE_GO_ON);
 	r.p.status = 0x40;
 	run(&r, 20, 0);
-	assert_true(r.d.arrived);
+	assert_true(r.d.led);
 }
 
 static void one_that_is_not_in_mode_8_is_not_moved(void **state)
@@ -1000,7 +1052,7 @@ int main(void)
 		cmocka_unit_test(a_drive_is_brought_up_as_cia_402_wants),
 		cmocka_unit_test(enabling_moves_nothing),
 		cmocka_unit_test(it_follows_to_the_increment),
-		cmocka_unit_test(one_that_was_pushed_goes_back_slowly),
+		cmocka_unit_test(one_that_was_pushed_stays_there_until_it_joins),
 		cmocka_unit_test(troubles_are_seen_latched_and_end_by_reset),
 		cmocka_unit_test(one_that_leaves_its_state_is_not_enabled_again),
 		cmocka_unit_test(silence_is_trouble),
@@ -1023,6 +1075,8 @@ int main(void)
 		cmocka_unit_test(a_place_counts_only_in_a_state_that_has_one),
 		cmocka_unit_test(a_restart_in_the_set_up_begins_it_again),
 		cmocka_unit_test(bits_and_mode_are_watched_in_every_answer),
+		cmocka_unit_test(an_emergency_that_has_ended_is_no_fault_later),
+		cmocka_unit_test(a_target_is_clipped_only_if_the_axis_does_not_go_there),
 		cmocka_unit_test(a_reset_writes_the_mode_again),
 		cmocka_unit_test(one_that_is_not_in_mode_8_is_not_moved),
 		cmocka_unit_test(one_stopped_by_nmt_is_trouble),

@@ -117,6 +117,23 @@ static void a_compact_eds_is_understood(void **state)
 	assert_int_equal(check(path, &d), 0);
 }
 
+/* It says nothing, and what stands behind it still counts. */
+static void a_line_without_a_sign_is_passed_over(void **state)
+{
+	struct interp_diag d;
+
+	(void)state;
+	write_eds(0x1016, "AccessType=rw");
+	add("a line of the maker\n[1016]\nAccessType\nCompactSubObj\n"
+	    "AccessType=rw\nCompactSubObj=1\n");
+	assert_int_equal(check(path, &d), 0);
+	write_eds(0x1016, "AccessType=rw");
+	add("a line of the maker\n[1016]\nAccessType=ro\nCompactSubObj\n"
+	    "CompactSubObj=1\n");
+	assert_int_equal(check(path, &d), -EINVAL);
+	assert_non_null(strstr(d.found, "1016:01, value 7f00fa: it is read"));
+}
+
 static void what_it_would_refuse_is_refused_at_the_start(void **state)
 {
 	static const struct {
@@ -162,6 +179,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_drive_that_has_all_of_it_is_taken),
 		cmocka_unit_test(a_compact_eds_is_understood),
+		cmocka_unit_test(a_line_without_a_sign_is_passed_over),
 		cmocka_unit_test(what_it_would_refuse_is_refused_at_the_start),
 		cmocka_unit_test(a_file_that_is_none_is_told),
 	};

@@ -3,8 +3,10 @@
  * test_edges.c - promises of io/edges.h, with a real thread: what it puts out,
  * with any lateness.  How even it is, is tested in the virtual machine.
  */
+#include "clock.h"
 #include "edges.h"
 
+#include <sched.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -72,7 +74,8 @@ static bool lines(void *arg, uint32_t step, uint32_t dir)
 static void begin(struct rig *r)
 {
 	const struct edges_config c = {
-		.pulser = { 1, 1, 1, 1, false }, .period_ns = PERIOD_NS,
+		.pulser = { 1, 1, 1, 1, false, 0, 0, 0 },
+		.period_ns = PERIOD_NS,
 		.slots = SLOTS, .cpu = -1, .write = lines, .arg = r,
 	};
 
@@ -178,6 +181,68 @@ static void a_stop_ends_the_pulses_until_another_target(void **state)
 	edges_end(r.e);
 }
 
+/* Whenever the two start, each has half a period for the other's lateness. */
+static void the_thread_and_the_cycle_run_half_a_period_apart(void **state)
+{
+	const int64_t periods[] = { 50000, 250000, 1000000, 2000000 };
+
+	(void)state;
+	for (int i = 0; i < 400; i++) {
+		const int64_t period = periods[i % 4];
+		const int64_t now = now_ns() + i * 7919;
+		const int64_t next = edges_next_ns(now, period);
+		struct setup_clock c;
+
+		setup_clock_start(&c, period);
+		assert_true(next > now && next <= now + period);
+		assert_int_equal((next - c.next_ns) % period % (period / 2), 0);
+		assert_int_not_equal((next - c.next_ns) % period, 0);
+	}
+}
+
+/* Counted as slots are, so a write quicker than those before is left off. */
+static void levels_last_as_long_as_the_file_says(void **state)
+{
+	struct edges_config c = {
+		.pulser = { 1, 1, 1, 1, false, 3 * SLOT_NS, 2 * SLOT_NS, 0 },
+		.period_ns = PERIOD_NS, .slots = SLOTS, .cpu = -1,
+		.write = lines,
+	};
+	struct rig r = { .least_ns = INT64_MAX };
+
+	(void)state;
+	c.arg = &r;
+	assert_int_equal(edges_start(&r.e, &c), 0);
+	edges_tell(r.e, &r.told);
+	settle(&r);
+	r.told.target[0] = 30;
+	edges_tell(r.e, &r.told);
+	settle(&r);
+	edges_end(r.e);
+	assert_int_equal(r.at[0], 30);
+	assert_true(r.least_ns > 2 * SLOT_NS - SLOT_NS / 4);
+}
+
+static void a_right_that_the_host_does_not_give_is_told(void **state)
+{
+	struct rig r;
+	const struct edges_config c = {
+		.pulser = { 1, 1, 1, 1, false, 0, 0, 0 },
+		.period_ns = PERIOD_NS,
+		.slots = SLOTS, .cpu = CPU_SETSIZE - 1, .write = lines,
+		.arg = &r,
+	};
+	char line[200] = "";
+
+	(void)state;
+	r = (struct rig) { .least_ns = INT64_MAX };
+	assert_int_equal(edges_start(&r.e, &c), 0);
+	assert_true(edges_note(r.e, line, sizeof(line)));
+	assert_non_null(strstr(line, "edge thread: core of its own"));
+	assert_false(edges_note(r.e, line, sizeof(line)));
+	edges_end(r.e);
+}
+
 /* A write that was interrupted before the lines changed is such a one. */
 static void a_level_is_long_enough_behind_a_slow_write_too(void **state)
 {
@@ -224,6 +289,9 @@ int main(void)
 		cmocka_unit_test(more_than_a_period_holds_is_put_out_later_not_lost),
 		cmocka_unit_test(a_stop_ends_the_pulses_until_another_target),
 		cmocka_unit_test(a_level_is_long_enough_behind_a_slow_write_too),
+		cmocka_unit_test(the_thread_and_the_cycle_run_half_a_period_apart),
+		cmocka_unit_test(levels_last_as_long_as_the_file_says),
+		cmocka_unit_test(a_right_that_the_host_does_not_give_is_told),
 		cmocka_unit_test(lines_that_are_gone_are_told),
 	};
 

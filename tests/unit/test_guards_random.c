@@ -302,6 +302,7 @@ static void period(struct world *w, uint64_t *s)
 		cycle_overrun(&w->r.c, 1 + (uint32_t)(rnd(s) % 12));
 	if (one_in(s, 15))
 		w->r.in.gap_v = volts[rnd(s) % 6];
+	memcpy(w->r.in.stands_at, w->r.out.target, sizeof(w->was));
 	cycle_step(&w->r.c, &w->r.in, &w->r.out);
 	w->reset_went = w->reset_went || w->r.out.reset;
 	f = forbidden(w);

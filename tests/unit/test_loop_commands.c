@@ -10,9 +10,13 @@
 
 #include "clock.h"
 #include "clocks.h"
+#include "places.h"
+#include "stop_act.h"
 
 #include <errno.h>
+#include <poll.h>
 #include <stdio.h>
+#include <sys/socket.h>
 
 #define SOON_NS	INT64_C(60000000000)	/* a busy machine is no late command */
 
@@ -43,6 +47,8 @@ static void begin_loop(struct desk *d)
 	crossing_init(&l->crossing);
 	assert_int_equal(shm_command_create(&l->commands, d->w.config.name,
 					    l->status->head.instance), 0);
+	assert_int_equal(shm_stop_create(&l->stops, d->w.config.name,
+					 l->status), 0);
 	connect_to(d);
 }
 
@@ -50,6 +56,8 @@ static void end_loop(struct desk *d)
 {
 	shm_command_destroy(d->w.l.commands);
 	d->w.l.commands = NULL;
+	shm_stop_destroy(d->w.l.stops);
+	d->w.l.stops = NULL;
 	close(d->fd);
 }
 
@@ -442,6 +450,157 @@ static void a_refused_start_leaves_nothing_behind(void **state)
 	}
 }
 
+/* -- Acts that end motion, by their own socket ----------------------------- */
+
+#define PERIODS_BEHIND	5
+
+static int stop_open(const struct desk *d)
+{
+	struct sockaddr_un at;
+	int fd;
+
+	assert_int_equal(places_address(&at, d->w.config.name, "stop"), 0);
+	fd = places_connect(&at, PLACES_EDMD);
+	assert_true(fd >= 0);
+	return fd;
+}
+
+static void stop_put(int fd, uint32_t verb, uint64_t id)
+{
+	const struct stop_act a = {
+		.magic = STOP_ACT_MAGIC, .verb = verb, .id = id,
+	};
+
+	assert_int_equal(send(fd, &a, sizeof(a), 0), sizeof(a));
+}
+
+/* Both threads run on: the cycle is stepped until there is an answer. */
+static int stop_code(struct desk *d, int fd)
+{
+	struct pollfd p = { .fd = fd, .events = POLLIN };
+	struct stop_answer a;
+
+	while (poll(&p, 1, 1) == 0)
+		turn(d);
+	assert_int_equal(recv(fd, &a, sizeof(a), 0), sizeof(a));
+	assert_int_equal(a.magic, STOP_ACT_MAGIC);
+	close(fd);
+	return a.code;
+}
+
+static int stop_ask(struct desk *d, uint32_t verb, uint64_t id)
+{
+	const int fd = stop_open(d);
+
+	stop_put(fd, verb, id);
+	return stop_code(d, fd);
+}
+
+static void run_a_job(struct desk *d)
+{
+	put_program(d, 0);
+	assert_int_equal(load_it(d), SHM_DONE);
+	assert_int_equal(ask_verb(d, SHM_DO_START), SHM_DONE);
+	assert_true(x_after(d, 50) > 0);
+}
+
+/* So long as an act is in edmd's ring, and the ring is full of others. */
+static void an_act_is_done_a_few_periods_behind_the_socket(void **state)
+{
+	struct desk *d = *state;
+	struct shm_done done;
+	int fd, periods = 0;
+
+	run_a_job(d);
+	for (int i = 0; i < SHM_COMMAND_SLOTS / 2; i++) {
+		const struct shm_command c = command(d, SHM_DO_STEP);
+
+		assert_int_equal(shm_command_put(d->fd, &c), 0);
+	}
+	fd = stop_open(d);
+	stop_put(fd, STOP_ACT_ESTOP, 4711);
+	/* The thread hands it over; no period passes meanwhile. */
+	while (shm_stop_waits(d->w.l.stops) == 0)
+		usleep(100);
+	while (!shm_done(d->w.l.status, 4711, &done)) {
+		turn(d);
+		periods++;
+	}
+	print_message("%d periods behind the socket\n", periods);
+	assert_true(periods <= PERIODS_BEHIND);
+	assert_int_equal(d->w.l.cycle.state, STATE_FAULT);
+	assert_false(d->w.out.power);
+	assert_int_equal(stop_code(d, fd), 0);
+}
+
+static void each_ends_motion_and_nothing_else_is_taken(void **state)
+{
+	struct desk *d = *state;
+	char junk[64] = "stop";
+	int fd;
+
+	assert_int_not_equal(stop_ask(d, STOP_ACT_HOLD, 1001), 0);
+	run_a_job(d);
+	assert_int_equal(stop_ask(d, STOP_ACT_HOLD, 1002), 0);
+	assert_int_equal(d->w.l.cycle.state, STATE_HOLD);
+	assert_int_equal(stop_ask(d, STOP_ACT_STOP, 1003), 0);
+	x_after(d, 300);
+	assert_false(d->w.l.cycle.loaded);
+	for (uint32_t verb = STOP_ACT_NVERBS; verb < 300; verb += 97) {
+		fd = stop_open(d);
+		stop_put(fd, verb, 1004);
+		for (ssize_t n = -1; n != 0; )
+			n = recv(fd, junk, 1, 0);
+		close(fd);
+	}
+	fd = stop_open(d);
+	assert_int_equal(send(fd, junk, sizeof(junk), 0), sizeof(junk));
+	for (ssize_t n = -1; n != 0; )
+		n = recv(fd, junk, 1, 0);
+	close(fd);
+	assert_int_equal(stop_ask(d, STOP_ACT_ESTOP, 1005), 0);
+}
+
+/* By edmd-jobs with the same id, later: a start that was given meanwhile is
+ * nobody's mistake as long as it stands; but what moves is ended. */
+static void the_copy_that_comes_later_does_it_once(void **state)
+{
+	struct desk *d = *state;
+	struct shm_command copy;
+	int32_t x;
+
+	run_a_job(d);
+	assert_int_equal(stop_ask(d, STOP_ACT_HOLD, 1001), 0);
+	x = x_after(d, 300);
+	copy = command(d, SHM_DO_HOLD);
+	copy.id = 1001;
+	assert_int_equal(give(d, &copy), SHM_DONE);
+	assert_int_equal(x_after(d, 50), x);
+	/* A start that was on its way when the hold came. */
+	assert_int_equal(ask_verb(d, SHM_DO_START), SHM_DONE);
+	assert_true(x_after(d, 50) > x);
+	assert_int_equal(shm_command_put(d->fd, &copy), 0);
+	assert_int_equal(ask_verb(d, SHM_DO_JOG), SHM_WRONG_STATE);
+	x = x_after(d, 300);
+	assert_int_equal(d->w.l.cycle.state, STATE_HOLD);
+	assert_int_equal(x_after(d, 50), x);
+}
+
+/* Who connects and says nothing takes nobody's place for long. */
+static void silent_ones_keep_no_act_away(void **state)
+{
+	struct desk *d = *state;
+	int silent[40];
+
+	run_a_job(d);
+	for (int i = 0; i < 40; i++)
+		silent[i] = stop_open(d);
+	assert_int_equal(stop_ask(d, STOP_ACT_ESTOP, 1001), 0);
+	assert_int_equal(d->w.l.cycle.state, STATE_FAULT);
+	for (int i = 0; i < 40; i++)
+		close(silent[i]);
+}
+
 int main(void)
 {
 #define T(f)	cmocka_unit_test_setup_teardown(f, setup, teardown)
@@ -457,6 +616,10 @@ int main(void)
 		T(one_for_another_edmd_or_without_an_id_is_not_done),
 		T(no_verb_is_no_command),
 		T(a_refused_start_leaves_nothing_behind),
+		T(an_act_is_done_a_few_periods_behind_the_socket),
+		T(each_ends_motion_and_nothing_else_is_taken),
+		T(the_copy_that_comes_later_does_it_once),
+		T(silent_ones_keep_no_act_away),
 	};
 
 	return cmocka_run_group_tests_name("loop_commands", tests, NULL, NULL);

@@ -66,7 +66,8 @@ static const struct refusal words[] = {
 	{ "G0 X1)",		1, 6,	"')'", "one of A" },
 	{ "G0 X1 /X2",		1, 7,	"a / inside", "first character" },
 	{ "G0 X1 %",		1, 7,	"% behind other words", "alone" },
-	{ "% G0 X1",		1, 1,	"words behind %", "alone" },
+	{ "G0 X1\n% G0 X2",	2, 1,	"words behind %", "alone" },
+	{ "%\nG0 X1\n% G0 X2",	3, 1,	"words behind %", "alone" },
 	{ "G0 X1 P4",		1, 7,	"P4 has no use", "M98 or M99" },
 	{ "G1 F1 X1 R4",	1, 10,	"R4 has no use", "G2 or G3" },
 	{ "G4 P1 Y1",		1, 7,	"Y1 has no use", "G28" },
@@ -86,7 +87,7 @@ static const struct refusal words[] = {
 };
 
 static const struct refusal arcs[] = {
-	{ "G2 F1 X10 I3",	1, 7,	"3.0000 mm from its centre", "agree" },
+	{ "G2 F1 X10 I3",	1, 7,	"3 mm from its centre", "agree" },
 	{ "G2 F1 X10",		1, 1,	"without a centre", "I and J, or R" },
 	{ "G18 G2 F1 X10",	1, 5,	"without a centre", "I and K, or R" },
 	{ "G2 F1 X10 R2",	1, 11,	"2 mm, too small", "at least 5 mm" },
@@ -202,14 +203,14 @@ static void an_axis_the_machine_has_not_is_refused(void **state)
 static void a_nul_byte_is_refused_even_in_a_comment(void **state)
 {
 	static const char *const texts[] = {
-		"G0 X1\0", "G0 X1(\0)", "G0 X1;\0\n", "/abc \0\n",
+		"G0 X1\0X2", "G0 X1(\0)", "G0 X1;\0\nX2", "/abc \0\nX2",
 	};
 
 	(void)state;
 	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
 		struct nc_read n = nc_ready();
 
-		nc_read_bytes(&n, texts[i], strlen(texts[i]) + 1);
+		nc_read_bytes(&n, texts[i], strlen(texts[i]) + 3);
 		assert_int_equal(n.rc, -EINVAL);
 		assert_int_equal(n.diag.column, strlen(texts[i]) + 1);
 		assert_string_equal(n.diag.found, "byte 0x00");

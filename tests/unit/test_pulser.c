@@ -175,8 +175,8 @@ static void quarters_add_up_one_line_at_a_time(void **state)
 static void straight_on_it_pulses_as_fast_as_it_says(void **state)
 {
 	static const struct pulser_config configs[] = {
-		{ 1, 1, 1, 1, false }, { 3, 2, 1, 4, false },
-		{ 1, 1, 1, 1, true }, { 2, 1, 1, 1, true },
+		{ 1, 1, 1, 1, false, 0, 0, 0 }, { 3, 2, 1, 4, false, 0, 0, 0 },
+		{ 1, 1, 1, 1, true, 0, 0, 0 }, { 2, 1, 1, 1, true, 0, 0, 0 },
 	};
 
 	(void)state;
@@ -197,7 +197,7 @@ static void straight_on_it_pulses_as_fast_as_it_says(void **state)
 
 static void axes_of_one_point_step_in_one_period(void **state)
 {
-	const struct pulser_config c = { 2, 1, 3, 1, false };
+	const struct pulser_config c = { 2, 1, 3, 1, false, 0, 0, 0 };
 	const int32_t target[IO_NAXES] = { 1, -1, 0, 1 };
 	struct pulser p;
 
@@ -214,7 +214,7 @@ static void axes_of_one_point_step_in_one_period(void **state)
 
 static void standing_elsewhere_by_word_makes_no_pulse(void **state)
 {
-	const struct pulser_config c = { 1, 1, 1, 1, false };
+	const struct pulser_config c = { 1, 1, 1, 1, false, 0, 0, 0 };
 	const int32_t at[IO_NAXES] = { 1000000, -5 };
 	struct pulser p;
 

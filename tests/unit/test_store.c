@@ -1099,6 +1099,87 @@ static void what_is_no_database_is_set_aside(void **state)
 	in_dir("ls %s/m.db.damaged-* > /dev/null");
 }
 
+/* Each is what a disk, or a person, may leave of the database. */
+static void a_database_that_is_gone_is_told(void **state)
+{
+	static const char *const left[] = {
+		"rm -f %s/m.db*", "rm -f %s/m.db*; : > %s/m.db",
+		"rm -f %s/m.db*; head -c 4096 /dev/zero > %s/m.db",
+		": > %s/m.db",
+	};
+	static const char *const beside[] = {
+		"touch %s/m.place", "touch %s/m.key", "touch %s/m.machine-key",
+		"echo G1 > %s/m.text-0a",
+	};
+	struct store *s;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(left) / sizeof(left[0]); i++) {
+		for (size_t k = 0; k < 4; k++) {
+			in_dir("rm -rf %s/*");
+			s = open_store();
+			assert_string_equal(store_mended(s), "");
+			store_close(s);
+			in_dir(left[i]);
+			in_dir(beside[k]);
+			s = open_store();
+			assert_non_null(strstr(store_mended(s), i == 2 ?
+					       "damaged" : "gone or empty"));
+			assert_int_equal(store_number(s, "waiting", 0), 1);
+			store_close(s);
+			s = open_store();
+			assert_string_equal(store_mended(s), "");
+			store_close(s);
+		}
+	}
+}
+
+static void a_new_folder_is_no_loss(void **state)
+{
+	struct store *s;
+
+	(void)state;
+	/* Those of another machine are there already. */
+	in_dir("touch %s/n.place %s/n.key %s/n.db");
+	s = open_store();
+	assert_string_equal(store_mended(s), "");
+	assert_int_equal(store_number(s, "waiting", 0), 0);
+	store_close(s);
+}
+
+static void links_and_fifos_are_not_opened(void **state)
+{
+	static const char *const names[] = {
+		"lock", "db", "db-wal", "db-shm", "place", "key", "machine-key",
+	};
+	static const char *const odd[] = {
+		"echo 1 > %s/elsewhere; chmod 644 %s/elsewhere; ln -s "
+		"elsewhere %s/m.", "ln -s nowhere %s/m.", "mkfifo %s/m.",
+		"mkdir %s/m.",
+	};
+	char command[200];
+	struct store *s;
+	struct stat st;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+		for (size_t k = 0; k < sizeof(odd) / sizeof(odd[0]); k++) {
+			in_dir("rm -rf %s/*");
+			snprintf(command, sizeof(command), "%s%s", odd[k],
+				 names[i]);
+			in_dir(command);
+			assert_int_equal(store_open(&s, dir, "m"), -ELOOP);
+			snprintf(command, sizeof(command), "%s/elsewhere", dir);
+			if (k == 0) {
+				assert_int_equal(stat(command, &st), 0);
+				assert_int_equal(st.st_mode & 0777, 0644);
+				assert_int_equal(st.st_size, 2);
+			}
+			in_dir("! test -e %s/nowhere");
+		}
+	}
+}
+
 static void the_first_page_torn_is_no_end(void **state)
 {
 	struct store *s = open_store();
@@ -1425,6 +1506,9 @@ int main(void)
 		T(a_page_costs_what_is_in_it),
 		T(a_job_costs_the_same_beside_ten_times_as_many),
 		T(a_damaged_page_costs_what_is_in_it),
+		T(a_database_that_is_gone_is_told),
+		T(a_new_folder_is_no_loss),
+		T(links_and_fifos_are_not_opened),
 		T(what_is_no_database_is_set_aside),
 		T(the_first_page_torn_is_no_end),
 		T(a_text_of_other_bytes_is_not_cut),

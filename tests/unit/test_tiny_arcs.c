@@ -53,10 +53,13 @@ static void say(const struct tiny *t, const char *what)
 		 t->z_mm);
 }
 
-/* The angle that the points go round the centre, in the arc's direction. */
+/* The angle that the points go round the centre, in the arc's direction; that
+ * of a second half that became a line, which may pass through it, is not
+ * known. */
 static double turned(const struct tiny *t, const struct points *p)
 {
 	double sum = 0;
+	bool begun = false;
 
 	for (size_t k = 1; k < p->n; k++) {
 		const double ax = p->at[k - 1].pos[0] - t->centre[0];
@@ -64,7 +67,10 @@ static double turned(const struct tiny *t, const struct points *p)
 		const double bx = p->at[k].pos[0] - t->centre[0];
 		const double by = p->at[k].pos[1] - t->centre[1];
 
-		if (p->at[k].kind == INTERP_ARC)
+		if (begun && p->at[k].kind == INTERP_LINE)
+			return sweep_of(t);
+		begun |= p->at[k].kind == INTERP_ARC;
+		if (begun)
 			sum += atan2(ax * by - ay * bx, ax * bx + ay * by);
 	}
 	return t->clockwise ? -sum : sum;
@@ -74,7 +80,8 @@ static void check_circle(const struct tiny *t, const struct points *p)
 {
 	const double r0 = hypot(t->from[0], t->from[1]);
 	const double r1 = hypot(t->to[0], t->to[1]);
-	const bool rounded = t->centre[0] != 0;
+	/* Where the radii differ, the centre moves between lattice points. */
+	const bool rounded = t->centre[0] != 0 || fabs(r1 - r0) > 1e-9;
 	const double near = NEAR + (rounded ? ROUNDED : 0) +
 			    (t->how == INTERP_MIN_SWITCH ? TOLERANCE : 0);
 
@@ -87,7 +94,7 @@ static void check_circle(const struct tiny *t, const struct points *p)
 			say(t, "off the circle");
 	}
 	/* Right round the centre the angle of a pulse is anything. */
-	if (fmin(r0, r1) > (rounded ? 2 : 0.9) &&
+	if (fmin(r0, r1) > (rounded ? 2 : 0.9) + fabs(r1 - r0) / 2 &&
 	    fabs(turned(t, p) - sweep_of(t)) > 3 / fmin(r0, r1))
 		say(t, "the wrong way round");
 }

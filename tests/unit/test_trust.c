@@ -50,6 +50,7 @@ struct sent {
 	const struct keyfile *by;
 	const char *channel, *client;
 	int64_t boot, count;
+	enum trust_want want;
 };
 
 /* What becomes of a packet that is @s. */
@@ -64,7 +65,8 @@ static enum trust_cause send(struct world *w, const struct sent *s)
 	seal_make(packet, &seal, s->channel, s->by->secret);
 	cause = trust_look(&w->t, &p, packet, sizeof(packet), w->now_us);
 	if (cause == TRUST_FINE)
-		cause = trust_fresh(&w->t, &p, s->client, w->now_us);
+		cause = trust_fresh(&w->t, &p, &(struct trust_client) {
+			.name = s->client, .want = s->want }, w->now_us);
 	return cause;
 }
 
@@ -130,6 +132,31 @@ static void what_is_not_ours_is_not_taken(void **state)
 		.boot = w->t.boot, .count = 0 }), TRUST_FINE);
 }
 
+/* Each asks by a name of its own, as a loop of edmctl does. */
+static void who_asks_takes_no_room_from_who_acts(void **state)
+{
+	struct world *w = *state;
+	struct sent s = good(w, 1);
+	char name[32];
+
+	s.want = TRUST_ACTS;
+	s.client = "acts";
+	assert_int_equal(send(w, &s), TRUST_FINE);
+	for (int i = 0; i < 3 * TRUST_SESSIONS; i++) {
+		s = good(w, 2 + i);
+		snprintf(name, sizeof(name), "c%d", i);
+		s.client = name;
+		assert_int_equal(send(w, &s), TRUST_FINE);
+	}
+	/* An act that was recorded is still known. */
+	s = good(w, 1);
+	s.want = TRUST_ACTS;
+	s.client = "acts";
+	assert_int_equal(send(w, &s), TRUST_REPLAY);
+	s.client = "new";
+	assert_int_equal(send(w, &s), TRUST_FINE);
+}
+
 /* More clients than there is room for: none that counts is forgotten. */
 static void a_crowd_lets_no_replay_through(void **state)
 {
@@ -139,12 +166,23 @@ static void a_crowd_lets_no_replay_through(void **state)
 
 	for (int i = 0; i < TRUST_SESSIONS; i++) {
 		s = good(w, 1);
+		s.want = TRUST_ACTS;
 		snprintf(name, sizeof(name), "c%d", i);
 		s.client = name;
 		assert_int_equal(send(w, &s), TRUST_FINE);
 	}
 	s.client = "late";
 	assert_int_equal(send(w, &s), TRUST_CROWD);
+	/* A stop and a question are not kept away. */
+	s.client = "stop";
+	s.want = TRUST_ENDS;
+	assert_int_equal(send(w, &s), TRUST_FINE);
+	s.client = "asks";
+	s.want = TRUST_ASKS;
+	assert_int_equal(send(w, &s), TRUST_FINE);
+	s.client = "c7";
+	s.want = TRUST_ACTS;
+	assert_int_equal(send(w, &s), TRUST_REPLAY);
 	w->now_us += TRUST_OLD_US + 2;
 	s.client = "c7";
 	assert_int_equal(send(w, &s), TRUST_TIME);
@@ -172,6 +210,7 @@ static void a_crowd_of_one_key_locks_no_other_out(void **state)
 	for (int i = 0; i <= TRUST_SESSIONS; i++) {
 		s = good(w, 1);
 		s.by = &w->other;
+		s.want = TRUST_ACTS;
 		snprintf(name, sizeof(name), "c%d", i);
 		s.client = name;
 		assert_int_equal(send(w, &s), i < TRUST_SESSIONS ?
@@ -343,6 +382,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		T(a_packet_is_taken_once),
 		T(what_is_not_ours_is_not_taken),
+		T(who_asks_takes_no_room_from_who_acts),
 		T(a_crowd_lets_no_replay_through),
 		T(a_crowd_of_one_key_locks_no_other_out),
 		T(so_much_is_taken_of_a_viewer_and_all_of_an_operator),

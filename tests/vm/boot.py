@@ -203,8 +203,11 @@ def drives(axes, tail="", absolute="yes", falls="", braked=""):
 
 
 GAP_FRAMES = """gap_id = 1008
-generator_id = 1009
 following_mm = 0.05
+[generator]
+interface = can
+can_interface = vcan0
+can_id = 1009
 [gap]
 servo_v = 15
 feed_gain_mm_s_v = 0.1

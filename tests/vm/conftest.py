@@ -12,6 +12,14 @@ from boot import (ADC, BRAKES, BUILD, BUILD_VM, CIRCLE, CUT, EDGES, FAR, GAP, GA
                   UNRULY_SCENES, VIRTUAL, checked, drives, lagging, machine)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def machine_can_be():
+    """What `make vm` found missing, if anything."""
+    lacks = BUILD_VM / "lacks"
+    if lacks.exists() and lacks.read_text():
+        pytest.skip(f"the virtual machine needs {lacks.read_text().strip()}")
+
+
 @pytest.fixture(scope="session")
 def plain():
     """Two CPUs in real time."""

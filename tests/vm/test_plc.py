@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from conftest import HERE, ROOT, Run, checked, machine
+from boot import HERE, ROOT, Run, checked, machine
 
 PLC = """
 [plc]

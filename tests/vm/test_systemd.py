@@ -36,6 +36,10 @@ def test_what_is_shared_is_made_for_the_group_and_nobody_else(systemd):
                    systemd.text("sockets-jobs").splitlines())
     assert sockets["."] == "drwxr-x--- edm-jobs edm"
     assert sockets["edmd.vm.jobs"] == "srw-rw---- edm-jobs edm"
+    sockets = dict(r.split(" ", 1) for r in
+                   systemd.text("sockets").splitlines())
+    assert sockets["."] == "drwxr-x--- edmd edm"
+    assert sockets["edmd.vm.stop"] == "srw-rw---- edmd edm"
 
 
 def test_a_program_on_the_network_sees_no_key(systemd):

@@ -18,6 +18,7 @@ from nacl.signing import VerifyKey
 from .keys import Key, KeyFileError, find_key, read_key
 from .layout import to_be_signed
 from .messages import Ack, Command, Event, JobChunk, Signed, Status
+from .stop import VERBS, Stop, act_id
 from .way import Way
 
 CHUNK = 32768
@@ -74,6 +75,7 @@ class Client:
         self._status: Status | None = None
         self._statuses = 0
         self.on_event: Callable[[Event], None] | None = None
+        self._is_here = url is None and self.key.role != "viewer"
         self._way = Way(machine, url)
         self._takes: dict[str, Callable[[Signed], None]] = {
             f"EDM.{machine}.ACK": self._take_ack,
@@ -200,19 +202,31 @@ class Client:
         """Ask until it is answered.  Raises Refused unless the code is 0."""
         seq = self._number()
         self._waits[seq] = None
+        act = self._end_motion(verb, seq)
         try:
             self._until(
-                lambda: self._waits[seq] is not None, timeout or self.timeout,
+                lambda: self._waits[seq] is not None or
+                (act is not None and act.is_done()), timeout or self.timeout,
                 lambda: self._publish("COMMAND", Command(
                     time.time_ns() // 1000, self.name, seq, verb, job, arg,
                     text).encode()))
-            answer = self._waits[seq]
+            answer = self._waits[seq] or Ack(
+                client=self.name, seq=seq, reason="done by edmd itself; "
+                "edmd-jobs does not answer")
         finally:
             del self._waits[seq]
-        assert answer is not None
+            if act:
+                act.close()
         if answer.code:
             raise Refused(answer)
         return answer
+
+    def _end_motion(self, verb: str, seq: int) -> Stop | None:
+        """On the machine's host: such an act goes to edmd itself, too."""
+        if not self._is_here or verb not in VERBS:
+            return None
+        return Stop(self.machine, verb,
+                    act_id(self.key.public, self.name, seq))
 
     def _json(self, verb: str, job: str = "", arg: float = 0.0) -> Any:
         return json.loads(self.ask(verb, job, arg).body)

@@ -113,12 +113,12 @@ def _parse(path: Path, text: str) -> Key:
     return key
 
 
-def is_trusted(uid: int) -> bool:
+def is_trusted(uid: int, service: str = SERVICE_USER) -> bool:
     """Is it root, the service, or this user?"""
     if uid in (0, os.geteuid()):
         return True
     try:
-        return uid == pwd.getpwnam(SERVICE_USER).pw_uid
+        return uid == pwd.getpwnam(service).pw_uid
     except KeyError:
         return False
 

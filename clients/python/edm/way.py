@@ -16,34 +16,39 @@ from pathlib import Path
 from .keys import is_trusted
 from .udpm import PACKET, Udpm, join, split
 
-URL = "udpm://239.255.76.67:7667?ttl=0"
+URL = os.environ.get("LCM_DEFAULT_URL") or "udpm://239.255.76.67:7667?ttl=0"
 AGAIN_S = 0.1
 BUFFER = 4 << 20
 # As common/places.h: anybody may make a file in the second.
 FOLDER, ANYBODY = Path("/run/edmd-jobs"), Path("/dev/shm")
 
 
-def _folder() -> Path:
+def _place(folder: Path, service: str) -> Path:
     try:
-        about = os.lstat(FOLDER)
+        about = os.lstat(folder)
     except OSError:
         return ANYBODY
     is_ours = (stat.S_ISDIR(about.st_mode) and not about.st_mode & 0o022
-               and is_trusted(about.st_uid))
-    return FOLDER if is_ours else ANYBODY
+               and is_trusted(about.st_uid, service))
+    return folder if is_ours else ANYBODY
 
 
-def _connect(machine: str) -> socket.socket | None:
+def connect(folder: Path, service: str, name: str) -> socket.socket | None:
+    """To the socket of a service, if that, root or this user listens."""
     s = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     s.setblocking(False)
     with contextlib.suppress(OSError):
-        s.connect(str(_folder() / f"edmd.{machine}.jobs"))
+        s.connect(str(_place(folder, service) / name))
         peer = s.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
-        if is_trusted(struct.unpack("=iII", peer)[1]):
+        if is_trusted(struct.unpack("=iII", peer)[1], service):
             s.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, BUFFER)
             return s
     s.close()
     return None
+
+
+def _connect(machine: str) -> socket.socket | None:
+    return connect(FOLDER, "edm-jobs", f"edmd.{machine}.jobs")
 
 
 class Way:

@@ -4,8 +4,9 @@
  *
  * The operator's start or retract gives the axes power.  Faults in which the
  * axes may be wrong take it away.  If other axes still follow, they first brake
- * on the path.  The axes may need time until they have power and stand on their
- * places.  Meanwhile the state is hold; afterwards the start goes on by itself.
+ * on the path.  The axes may need time until they have power, and then they may
+ * stand beside the path (path/resync.h).  Meanwhile the state is hold;
+ * afterwards what was asked for is done.
  *
  * A machine whose axes always have power never says `starting` or `axes_off`.
  * Then none of this happens.
@@ -19,13 +20,29 @@
 
 struct cycle;
 
+enum axes_phase {
+	AXES_FREE,			/* nothing is asked for */
+	AXES_SEARCH,			/* for the way back to the path */
+	AXES_POWER,			/* asked for, and has not come */
+	AXES_BACK,			/* on the way back to the path */
+};
+
+typedef void axes_then_fn(struct cycle *c, double arg_mm);
+
 struct axes {
-	bool starting, off, steers;	/* as the machine says */
-	bool awaited;			/* power was asked for and has not come:
-					 * nothing may move */
-	bool start;			/* start the job when it comes */
+	bool starting, off, steers, powerless;	/* as the machine says */
+	enum axes_phase phase;
+	axes_then_fn *then;		/* what was asked for; NULL: the state
+					 * says it */
+	double then_mm;
 	uint64_t waited;		/* cycles */
 };
+
+/** axes_awaits() - is power asked for, so that nothing may move yet? */
+static inline bool axes_awaits(const struct axes *a)
+{
+	return a->phase == AXES_SEARCH || a->phase == AXES_POWER;
+}
 
 /** axes_guard() - note the troubles of the axes as faults. */
 void axes_guard(struct cycle *c, const struct io_inputs *in);
@@ -34,21 +51,15 @@ void axes_guard(struct cycle *c, const struct io_inputs *in);
 uint64_t axes_faults(void);
 
 /**
- * axes_want() - ask for power, for a @start or for a motion while held.
- * Return: true if motion may begin now; false if the power is awaited.
+ * axes_want() - do @then when the axes have power and stand on the path; now,
+ * if they do.  @then may be NULL.
  */
-bool axes_want(struct cycle *c, bool start);
+void axes_want(struct cycle *c, axes_then_fn *then, double arg_mm);
 
 /** axes_forget() - stop waiting; axes that have power keep it. */
 void axes_forget(struct cycle *c);
 
-enum axes_await { AXES_READY, AXES_START, AXES_AWAITED };
-
-/**
- * axes_await() - may anything move?  To be called once a cycle.
- *
- * Return: AXES_START, once, when the start that waited for the axes is due now.
- */
-enum axes_await axes_await(struct cycle *c);
+/** axes_await() - may anything move?  To be called once a cycle. */
+bool axes_await(struct cycle *c);
 
 #endif /* RT_AXES_H */

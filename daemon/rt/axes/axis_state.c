@@ -11,6 +11,7 @@ void axis_state_get(const struct cycle *c, struct axis_state *ret)
 	memcpy(ret->place, c->out.target, sizeof(ret->place));
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		ret->drive[i] = comp_pulses(&c->comp.axis[i]);
+		ret->off[i] = c->resync.off[i];
 		ret->shift[i] = c->comp.axis[i].shift;
 		ret->toward[i] = c->comp.axis[i].toward;
 	}
@@ -40,6 +41,7 @@ void axis_state_set(struct cycle *c, const struct axis_state *s)
 		a->added = added(s, i);
 		a->toward = s->toward[i];
 	}
+	resync_set(&c->resync, s->off);
 	c->limit = s->limit;
 	c->comp.resting = true;
 	/* Without a PLC nobody would ever say another temperature. */

@@ -23,6 +23,7 @@ struct cycle;
 struct axis_state {
 	int32_t place[INTERP_NAXES];
 	int32_t drive[INTERP_NAXES];	/* where the drives were sent */
+	int32_t off[INTERP_NAXES];	/* where they stand, less that */
 	int32_t shift[INTERP_NAXES];	/* what homing found; comp.h */
 	int8_t toward[INTERP_NAXES];	/* of the last move; 0: none */
 	uint32_t homed, unplaced;	/* bit per axis */

@@ -201,6 +201,7 @@ static bool applies(const struct cycle *c)
 	return c->loaded && (c->state == STATE_TRAVEL ||
 			     c->state == STATE_HOLD) &&
 	       c->out.enable && (!c->axes.off || c->axes.steers) &&
+	       !resync_is_off(c) &&
 	       !escape_is_out(&c->escape);
 }
 

@@ -15,11 +15,21 @@ static double own_off_us(const struct cycle *c)
 	return off_us > 0 ? off_us : c->gap.off_us;
 }
 
-/* Can this machine take this step? */
+static double off_us_at(const struct cycle *c, uint32_t rung)
+{
+	return own_off_us(c) *
+	       (1 + rung * (c->gap.arcing_off_max - 1) / ARCING_OFF_LAST);
+}
+
+/* Can this machine take this step?  The off time must reach the generator, and
+ * be longer there than a step before. */
 static bool has(const struct cycle *c, uint32_t rung)
 {
 	if (rung <= ARCING_OFF_LAST)
-		return own_off_us(c) > 0 && c->gap.arcing_off_max > 1;
+		return rung > ARCING_NONE && own_off_us(c) > 0 &&
+		       asking_off_us(c, off_us_at(c, rung)) >
+		       (rung == ARCING_OFF_FIRST ? own_off_us(c) :
+			asking_off_us(c, off_us_at(c, rung - 1)));
 	if (rung == ARCING_JUMP)
 		return flush_jumps(c);
 	return true;
@@ -44,6 +54,16 @@ static void climb(struct cycle *c)
 	fault_latch(&c->fault, FAULT_ARCING);
 }
 
+/* The last step of the off time up to @rung. */
+static uint32_t off_step(const struct cycle *c, uint32_t rung)
+{
+	uint32_t step = rung < ARCING_OFF_LAST ? rung : ARCING_OFF_LAST;
+
+	while (step > ARCING_NONE && !has(c, step))
+		step--;
+	return step;
+}
+
 /* The arcs have ended. If they come again, the jump and the retract are done
  * again too. */
 static void end_deeds(struct cycle *c)
@@ -53,8 +73,7 @@ static void end_deeds(struct cycle *c)
 	a->lasting = 0;
 	a->due = false;
 	if (a->rung > ARCING_OFF_LAST)
-		a->rung = has(c, ARCING_OFF_LAST) ? ARCING_OFF_LAST :
-						    ARCING_NONE;
+		a->rung = off_step(c, ARCING_OFF_LAST);
 }
 
 /* This is slow, because arcs often come back to the place where they burned. */
@@ -118,11 +137,8 @@ void arcing_met(struct cycle *c)
 
 double arcing_off_us(const struct cycle *c)
 {
-	const uint32_t step = c->arcing.rung < ARCING_OFF_LAST ?
-			      c->arcing.rung : ARCING_OFF_LAST;
+	const uint32_t step = off_step(c, c->arcing.rung);
 
-	if (step == ARCING_NONE || !has(c, ARCING_OFF_FIRST))
-		return c->out.pulse[INTERP_TECH_OFF_US];
-	return own_off_us(c) *
-	       (1 + step * (c->gap.arcing_off_max - 1) / ARCING_OFF_LAST);
+	return step == ARCING_NONE ? c->out.pulse[INTERP_TECH_OFF_US] :
+				     off_us_at(c, step);
 }

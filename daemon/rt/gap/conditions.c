@@ -159,7 +159,8 @@ enum conditions_result conditions_set(struct cycle *c, uint32_t field,
 	if (!is_used(field))
 		return CONDITIONS_BAD;
 	if (!isnan(value) &&
-	    !interp_tech_value_ok((enum interp_tech_id)field, value))
+	    !(interp_tech_value_ok((enum interp_tech_id)field, value) &&
+	      asking_takes(c, field, value)))
 		return CONDITIONS_BAD;
 	if (at == CONDITIONS_SETS_MAX && !isnan(value))
 		return CONDITIONS_FULL;

@@ -231,6 +231,26 @@ bool escape_by(struct cycle *c, double ds_mm)
 	return more;
 }
 
+bool escape_scout(struct escape *e, int toward)
+{
+	const struct escape_leg *l;
+	int64_t tick = e->tick - toward;
+
+	if (tick < 0 && e->at > 0)
+		tick = e->leg[--e->at].ticks - 1;
+	if (tick > e->leg[e->at].ticks && e->at + 1 < e->nlegs) {
+		e->at++;
+		tick = 1;
+	}
+	l = &e->leg[e->at];
+	if (tick < 0 || tick > l->ticks)
+		return false;
+	stand_at(e, tick);
+	e->way_mm = l->start_mm + (l->end_mm - l->start_mm) * (double)tick /
+				  (double)l->ticks;
+	return true;
+}
+
 double escape_stop_mm(const struct cycle *c, double to_mm)
 {
 	const struct escape *e = &c->escape;

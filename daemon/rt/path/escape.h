@@ -76,6 +76,12 @@ bool escape_find(struct cycle *c, const int32_t pos[INTERP_NAXES]);
 bool escape_by(struct cycle *c, double ds_mm);
 
 /**
+ * escape_scout() - @e, a copy, goes a lattice point on; @toward as ds_mm.
+ * Return: false at its ends.
+ */
+bool escape_scout(struct escape *e, int toward);
+
+/**
  * escape_stop_mm() - the place to plan for on the way to the place @to_mm.
  *
  * The next corner if one lies between; both as place_mm() counts.

@@ -61,7 +61,7 @@ static bool follows_plan(const struct cycle *c)
 static bool has_a_name(const struct cycle *c)
 {
 	return gap_stands(c) || follows_plan(c) || !cycle_moves(c) ||
-	       c->busy || dwells(c) || c->mcode.waits || c->axes.awaited ||
+	       c->busy || dwells(c) || c->mcode.waits || c->axes.phase ||
 	       (c->state == STATE_TRAVEL && c->ground.answer == GROUND_ASKED) ||
 	       !contouring_rests(&c->contouring) ||
 	       (c->override == 0 && (c->state == STATE_TRAVEL ||

@@ -1,7 +1,18 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* arc.c - G2 and G3: finds the centre from I J K or from R */
+/*
+ * arc.c - G2 and G3: finds the centre from I J K or from R
+ *
+ * A program writes an arc by places that are rounded to their last digit q.  So
+ * each of them is up to q / sqrt(2) beside the place that was meant, and only
+ * by that may the arc fail to come out: start, end and centre of the radii, or
+ * R and half the way from start to end.  What is farther off was not meant so,
+ * and is refused.  How fine the machine's pulses are has no part in it.
+ */
+#include "code/macro.h"
+#include "code/number.h"
 #include "code/reader.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -17,7 +28,111 @@ const struct nc_plane nc_planes[3] = {
 	  "G19 (YZ)", "J and K, or R" },
 };
 
+/* -- Last digits ---------------------------------------------------------- */
+
+/* X10.5 and X10.500 say the same, so zeros at the end are no digits: one of the
+ * two words of a place has others nearly always.  Nobody rounds an arc to less
+ * than these. */
+#define DECIMALS_MM	2
+#define DECIMALS_INCH	3
+
+/* How many decimals the word at @at has.  What macros computed has those that a
+ * control keeps; so has a length without a point, where it counts in them. */
+static int decimals_of(const struct nc_reader *r, const uint8_t *at)
+{
+	const int kept = r->unit_mm > 1 ? 4 : 3;
+	const uint8_t *p = at + 1;
+	int n = 0;
+
+	if (nc_is_computed(r, p))
+		return kept;
+	while (p < r->stop && *p != '.' &&
+	       (nc_classes[*p] == NC_NUMERIC || nc_classes[*p] == NC_BLANK))
+		p++;
+	if (p == r->stop || *p != '.')
+		return r->d->point == NC_POINT_LAST ? kept : 0;
+	for (int k = 1; ++p < r->stop && isdigit(*p); k++)
+		n = *p == '0' ? n : k;
+	return n;
+}
+
+/* The last digit of those words of the line that are in @words, in mm. */
+static double digit_mm(const struct nc_reader *r, uint32_t words)
+{
+	int most = r->unit_mm > 1 ? DECIMALS_INCH : DECIMALS_MM;
+
+	for (words &= r->block.words; words; words &= words - 1) {
+		const int n = decimals_of(r, r->block.at[__builtin_ctz(words)]);
+
+		most = n > most ? n : most;
+	}
+	return r->unit_mm / nc_pow10[most < NC_POW10_MAX ? most : NC_POW10_MAX];
+}
+
+/* A place that is written to @digit_mm may be so far beside the one meant. */
+static double rounded_mm(double digit_mm)
+{
+	return digit_mm * M_SQRT1_2;
+}
+
+/* An end and a centre; where the top of a wire leans, the bottom's too. */
+#define RING_PLACES	4
+
+/* Ends of an arc in its plane, and its centre. */
+struct ring {
+	double from_mm[2], to_mm[2], centre_mm[2];
+	uint32_t words[RING_PLACES];	/* that say a place; 0: none */
+	const char *name;
+};
+
+/* How far the radii may differ. */
+static double ring_rounded_mm(const struct nc_reader *r, const struct ring *g)
+{
+	double mm = 0;
+
+	for (int i = 0; i < RING_PLACES; i++)
+		if (g->words[i])
+			mm += 2 * rounded_mm(digit_mm(r, g->words[i]));
+	return mm;
+}
+
+static double length(const double from_mm[2], const double to_mm[2])
+{
+	const double a = to_mm[0] - from_mm[0], b = to_mm[1] - from_mm[1];
+
+	return sqrt(a * a + b * b);
+}
+
+/*
+ * Start and end are each at their own place beside the circle.  A centre that
+ * is off makes the one radius longer and, on half a turn, the other shorter.
+ */
+static int check_ring(struct nc_reader *r, const struct ring *g,
+		      const double end_mm[INTERP_NAXES])
+{
+	const double r0 = length(g->from_mm, g->centre_mm);
+	const double r1 = length(g->to_mm, g->centre_mm);
+	const double off = fabs(r1 - r0);
+	char wanted[96];
+	double most;
+
+	if (off <= NOTHING_MM)
+		return 0;
+	most = ring_rounded_mm(r, g);
+	if (off <= most + NOTHING_MM)
+		return 0;
+	snprintf(wanted, sizeof(wanted), "radii that agree within %.3g mm, as "
+		 "its last digits can say them", most);
+	return nc_placed(r, nc_refuse_at(r, r->line, wanted, "the %s starts "
+					 "%.7g mm from its centre and ends "
+					 "%.7g mm from it", g->name, r0, r1),
+			 end_mm);
+}
+
+/* -- The centre ----------------------------------------------------------- */
+
 static int by_centre(struct nc_reader *r, const struct nc_plane *p,
+		     const double end_mm[INTERP_NAXES],
 		     struct interp_build_arc *arc)
 {
 	const struct nc_block *b = &r->block;
@@ -50,7 +165,14 @@ static int by_centre(struct nc_reader *r, const struct nc_plane *p,
 		return nc_refuse(r, b->at[has_a ? p->ca : p->cb],
 				 "a centre away from the start",
 				 "an arc of radius 0: its centre is its start");
-	return 0;
+	return check_ring(r, &(struct ring) {
+		.name = "arc",
+		.from_mm = { here[p->a], here[p->b] },
+		.to_mm = { end_mm[p->a], end_mm[p->b] },
+		.centre_mm = { arc->centre_a_mm, arc->centre_b_mm },
+		.words = { NC_BIT(p->a) | NC_BIT(p->b),
+			   NC_BIT(p->ca) | NC_BIT(p->cb) },
+	}, end_mm);
 }
 
 static int refuse_radius(struct nc_reader *r, double radius, double half)
@@ -89,8 +211,9 @@ static int by_radius(struct nc_reader *r, const struct nc_plane *p,
 		return nc_refuse(r, r->block.at[NC_R], "an end away from the "
 				 "start; I J K for a full circle",
 				 "R on an arc that ends at its start");
-	if (half - radius > fmax(2 * r->o->machine->axis[p->a].pulse_mm,
-				 0.001 * radius))
+	if (half - radius > NOTHING_MM +
+	    rounded_mm(digit_mm(r, NC_BIT(p->a) | NC_BIT(p->b))) +
+	    digit_mm(r, NC_BIT(NC_R)) / 2)
 		return refuse_radius(r, radius, half);
 	if (radius > half)
 		off = sqrt((radius - half) * (radius + half)) / chord;
@@ -106,7 +229,7 @@ static int centre(struct nc_reader *r, const struct nc_plane *p,
 		  struct interp_build_arc *arc)
 {
 	if (!nc_has(r, NC_R))
-		return by_centre(r, p, arc);
+		return by_centre(r, p, end_mm, arc);
 	if (r->block.words & NC_CENTRE)
 		return nc_refuse(r, r->block.at[NC_R], p->centre,
 				 "R beside a centre");
@@ -125,10 +248,29 @@ static double top_centre_from(const struct nc_reader *r, int i,
 	return r->arc_incremental ? nc_here(r)[axis] : r->offset_mm[axis];
 }
 
+static int check_top(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		     const struct interp_build_contour *c, bool leans)
+{
+	const double *here = nc_here(r);
+
+	return check_ring(r, &(struct ring) {
+		.name = "arc of the top",
+		.from_mm = { here[INTERP_U], here[INTERP_V] },
+		.to_mm = { end_mm[INTERP_U], end_mm[INTERP_V] },
+		.centre_mm = { c->centre_mm[0], c->centre_mm[1] },
+		.words = {
+			NC_BIT(NC_U) | NC_BIT(NC_V),
+			NC_BIT(NC_UI) | NC_BIT(NC_UJ),
+			leans ? NC_BIT(NC_X) | NC_BIT(NC_Y) : 0,
+			leans ? NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_R) : 0,
+		},
+	}, end_mm);
+}
+
 /* The arc of the top.  Its direction is the G word behind the colon, or else
  * that of the bottom.  If the line only has U or V, the top goes straight. */
-static int top(struct nc_reader *r, int motion,
-	       const struct interp_build_contour *bottom,
+static int top(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+	       int motion, const struct interp_build_contour *bottom,
 	       struct interp_build_contour *c)
 {
 	const struct nc_block *b = &r->block;
@@ -165,14 +307,14 @@ static int top(struct nc_reader *r, int motion,
 		  c->centre_mm[1] - here[INTERP_V]) < NOTHING_MM)
 		return nc_refuse_at(r, r->line, "I or J away from 0",
 				    "a top arc of radius 0");
-	return 0;
+	return check_top(r, end_mm, c, leans);
 }
 
 static int go_two(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		  int motion, const struct interp_build_contour *bottom)
 {
 	struct interp_build_contour two[2] = { *bottom };
-	const int err = top(r, motion, bottom, &two[1]);
+	const int err = top(r, end_mm, motion, bottom, &two[1]);
 
 	return err ? err : contour_two(&r->contour, end_mm, two, &r->word,
 				     r->diag);
@@ -196,7 +338,7 @@ static int go_round(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES])
 {
 	const struct interp_build_contour bottom = { .arc = false };
-	int err = nc_word(r, end_mm, r->block.code[NC_MOTION]->value == 0);
+	int err = nc_word(r, false, r->block.code[NC_MOTION]->value == 0);
 
 	if (!err)
 		err = nc_room(r);
@@ -221,13 +363,11 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 	nc_target(r, end_mm);
 	err = centre(r, p, end_mm, &arc);
 	if (!err)
-		err = nc_word(r, end_mm, false);
+		err = nc_word(r, false, false);
 	if (!err)
 		err = nc_room(r);
 	if (err)
 		return err;
-	/* A whole circle ends where it began. */
-	r->word.feed_mm_s = r->feed_mm_s;
 	r->moved |= NC_BIT(p->a) | NC_BIT(p->b);
 	if (r->tool.on)
 		return nc_tip_arc(r, end_mm, &arc);

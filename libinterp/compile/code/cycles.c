@@ -310,7 +310,7 @@ static int to_line(void *arg, const double end_mm[INTERP_NAXES], bool rapid)
 {
 	struct nc_orbit *c = arg;
 	struct nc_reader *r = c->r;
-	int err = nc_word(r, end_mm, rapid);
+	int err = nc_word(r, false, rapid);
 
 	if (err == 0)
 		err = nc_room(r);
@@ -328,7 +328,7 @@ static int to_arc(void *arg, const double end_mm[INTERP_NAXES],
 {
 	struct nc_orbit *c = arg;
 	struct nc_reader *r = c->r;
-	int err = nc_word(r, end_mm, false);
+	int err = nc_word(r, false, false);
 
 	if (!err)
 		err = nc_room(r);

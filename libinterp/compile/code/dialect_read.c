@@ -165,6 +165,7 @@ static const struct {
 	{ "comment", NC_SEMICOLON }, { "block-end", NC_BLOCK_END },
 	{ "top-words", NC_COLON },
 	{ "program-number", NC_WORD + NC_O },
+	{ "program-name", NC_LETTER_NAME },
 	{ "none", NC_BAD },
 };
 
@@ -172,8 +173,8 @@ static const struct {
 static int slot_of(char letter)
 {
 	for (int i = 0; i < NC_NSLOTS; i++) {
-		if (nc_words[i].letter == letter && i != NC_ANGLE &&
-		    i != NC_UI && i != NC_UJ)
+		if (nc_words[i].letter == letter && isupper(letter) &&
+		    i != NC_ANGLE && i != NC_UI && i != NC_UJ)
 			return i;
 	}
 	return -1;
@@ -187,7 +188,8 @@ static void set_class(struct reading *f, unsigned char c, uint8_t class)
 
 static int refuse_letter(struct reading *f, struct piece p)
 {
-	return refuse(f, p.at, "a letter from A to Z, or semicolon, colon",
+	return refuse(f, p.at, "a letter from A to Z, or semicolon, colon, "
+		      "angle",
 		      "letter", p);
 }
 
@@ -259,6 +261,7 @@ static int read_letter(struct reading *f, struct piece key, struct piece value)
 	const bool one = key.n == 1 && isupper((unsigned char)*key.at);
 	const unsigned char c = is(key, "semicolon") ? ';' :
 				is(key, "colon") ? ':' :
+				is(key, "angle") ? '<' :
 				one ? (unsigned char)*key.at : 0;
 
 	if (is(key, "values"))
@@ -277,7 +280,7 @@ static int read_letter(struct reading *f, struct piece key, struct piece value)
 		      "condition-or-axis, condition-S, register, top, "
 		      "top-centre-I, top-centre-J, taper-angle, "
 		      "of-ignored-words, comment, block-end, top-words, "
-		      "program-number, none, "
+		      "program-number, program-name, none, "
 		      "refuse: or ignore-line:",
 		      "a letter cannot be", value);
 }

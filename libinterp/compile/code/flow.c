@@ -9,16 +9,19 @@
  */
 #include "code/macro.h"
 #include "code/number.h"
+#include "grow.h"
 
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define NUMBER_MAX	99999999	/* of a program */
 #define LABEL_MAX	9999		/* of one that is called */
-#define A_CALL		"M98 P1000, with L3 to repeat it; or M98 P31000"
+#define A_CALL		"M98 P1000, with L3 to repeat it; or M98 P31000; or " \
+			"M98 <NAME> in Fanuc's dialects"
 
 const uint8_t *nc_line_end(const uint8_t *p, const uint8_t *end)
 {
@@ -42,29 +45,48 @@ const uint8_t *nc_skip_void(const uint8_t *p, const uint8_t *end)
 
 static bool is_keyword(const uint8_t *p, const uint8_t *end)
 {
-	p = nc_skip_blanks(p, end);
+	p = nc_skip_void(p, end);
 	return p < end && (*p & 0xdf) >= 'A' && (*p & 0xdf) <= 'Z' &&
 	       p + 1 < end && (p[1] & 0xdf) >= 'A' && (p[1] & 0xdf) <= 'Z';
 }
 
-/* The number behind the O (or the N, if the dialect has that) that begins the
- * line from @p to @end; 0: the line does not begin so. */
-static uint32_t label_of(const struct nc_dialect *d, const uint8_t *p,
-			 const uint8_t *end, const uint8_t **ret_at)
+/* -- Where programs begin ------------------------------------------------- */
+
+const uint8_t *nc_name_end(const uint8_t *at, const uint8_t *end)
 {
-	const char letter = (char)d->label;
-	uint64_t n = 0, ignored = 0;
-	const uint8_t *first;
+	const uint8_t *p = at + 1;
+
+	while (p < end && (isalnum(*p) || (*p && strchr("+-_. ", *p))))
+		p++;
+	return p < end && *p == '>' && p > at + 1 ? p + 1 : NULL;
+}
+
+/* What may begin a program in the line from @p to @end: the first thing in it,
+ * or the first behind its N. */
+static const uint8_t *first_of(const struct nc_dialect *d, const uint8_t *p,
+			       const uint8_t *end)
+{
+	uint64_t ignored = 0;
 
 	p = nc_skip_void(p, end);
-	if (letter != 'N' && p < end && (*p | 0x20) == 'n') {
+	if (d->label != 'N' && p < end && (*p | 0x20) == 'n') {
 		p = nc_skip_blanks(p + 1, end);
 		p = nc_skip_void(nc_digits(p, end, &ignored), end);
 	}
-	if (p == end || ((*p & 0xdf) != letter &&
+	return p;
+}
+
+/* The number behind the O (or the N, if the dialect has that) at @p; 0: there
+ * is none. */
+static uint32_t label_of(const struct nc_dialect *d, const uint8_t *p,
+			 const uint8_t *end)
+{
+	const uint8_t *first;
+	uint64_t n = 0;
+
+	if (p == end || ((*p & 0xdf) != d->label &&
 			 !(*p == ':' && d->classes[':'] == NC_WORD + NC_O)))
 		return 0;
-	*ret_at = p;
 	first = nc_skip_blanks(p + 1, end);
 	p = nc_digits(first, end, &n);
 	/* LinuxCNC's o100 sub is not a label. */
@@ -73,102 +95,168 @@ static uint32_t label_of(const struct nc_dialect *d, const uint8_t *p,
 	return p - first <= NC_DIGITS_MAX && n <= NUMBER_MAX ? (uint32_t)n : 0;
 }
 
-uint32_t nc_label_at(const struct nc_reader *r, const uint8_t *p,
-		     const uint8_t *end)
+static bool is_name(const struct nc_dialect *d, const uint8_t *p,
+		    const uint8_t *end)
 {
-	const uint8_t *at;
+	return p < end && d->classes[*p] == NC_LETTER_NAME &&
+	       nc_name_end(p, end);
+}
 
-	return r->d->label == 'O' ? label_of(r->d, p, end, &at) : 0;
+bool nc_begins_program(const struct nc_reader *r, const uint8_t *p,
+		       const uint8_t *end)
+{
+	p = first_of(r->d, p, end);
+	return r->d->label == 'O' && (label_of(r->d, p, end) ||
+				      is_name(r->d, p, end));
+}
+
+/* Lower case means the same as upper case. */
+static bool same_name(const uint8_t *a, const uint8_t *b)
+{
+	for (; *a != '>' && toupper(*a) == toupper(*b); a++)
+		b++;
+	return *a == *b;
+}
+
+static struct nc_label *named(struct nc_reader *r, const uint8_t *at)
+{
+	for (size_t i = 0; i < r->nnamed; i++, r->executed++) {
+		const struct nc_label *l = &r->named[i];
+
+		if (same_name(r->text + l->place.offset + l->name, at))
+			return &r->named[i];
+	}
+	return NULL;
 }
 
 static int refuse_second(struct nc_reader *r, struct nc_label l,
-			 const uint8_t *at, uint32_t n)
+			 const uint8_t *at, uint32_t first)
 {
-	r->mapped = false;
-	r->line_at = l.at;
-	r->line = l.line;
-	return nc_refuse(r, at, "each O number once",
-			 "a second O%u; the first is in line %u", n,
-			 r->labels[n].line);
+	nc_go(r, l.place);
+	nc_begin_line(r);
+	r->line = l.place.line;
+	return nc_refuse(r, at, "each of them once",
+			 "a second %s; the first is in line %u",
+			 nc_quote_word(r, at).s, first);
 }
 
-/* Note the O word of a line, if it has one. */
+static int note_name(struct nc_reader *r, struct nc_label l, const uint8_t *at)
+{
+	const struct nc_label *was = named(r, at);
+
+	if (was)
+		return refuse_second(r, l, at, was->place.line);
+	if (r->nnamed == r->named_room &&
+	    grow_array(&r->named, &r->named_room, sizeof(*r->named)))
+		return -ENOMEM;
+	l.name = (uint32_t)(at - r->text - (ptrdiff_t)l.place.offset);
+	r->named[r->nnamed++] = l;
+	return 0;
+}
+
+/* Note what begins a program in a line, if anything does. */
 static int note_label(struct nc_reader *r, struct nc_label l,
 		      const uint8_t *end)
 {
-	const uint8_t *at;
-	const uint32_t n = label_of(r->d, l.at, end, &at);
+	const uint8_t *at = first_of(r->d, r->text + l.place.offset, end);
+	const uint32_t n = label_of(r->d, at, end);
 
+	if (is_name(r->d, at, end))
+		return note_name(r, l, at);
 	if (n == 0 || n > LABEL_MAX)
 		return 0;
-	if (r->labels[n].line && r->d->label == 'O')
-		return refuse_second(r, l, at, n);
-	if (r->labels[n].line)
-		r->labels[n].second = l.line;
+	if (r->labels[n].place.line && r->d->label == 'O')
+		return refuse_second(r, l, at, r->labels[n].place.line);
+	if (r->labels[n].place.line)
+		r->labels[n].second = l.place.line;
 	else
 		r->labels[n] = l;
 	return 0;
 }
 
-/* A % alone on its line. */
-static bool ends_tape(const uint8_t *p, const uint8_t *end)
-{
-	if (p == end || *p != '%')
-		return false;
-	p = nc_skip_void(p + 1, end);
-	return p == end || *p == ';';
-}
-
-/* Look at every line, up to the second %. */
+/* Look at every line, once. */
 static int find_labels(struct nc_reader *r)
 {
-	struct nc_label l = { .at = r->text, .line = 1 };
-	bool fresh = true;
+	struct nc_label l = { .place.line = 1 };
+	const uint8_t *p = r->text;
 	int err = 0;
 
+	if (r->labels)
+		return 0;
 	r->labels = calloc(LABEL_MAX + 1, sizeof(r->labels[0]));
 	if (!r->labels)
 		return -ENOMEM;
-	for (; !err && l.at < r->end; l.line++) {
-		const uint8_t *end = nc_line_end(l.at, r->end);
-		const uint8_t *p = nc_skip_void(l.at, end);
+	for (; !err && p < r->end; l.place.line++) {
+		const uint8_t *end = nc_line_end(p, r->end);
 
-		if (ends_tape(p, end) && !fresh)
-			break;
-		if (p < end && *p != ';' && *p != '/')
-			fresh = false;
+		l.place.offset = (size_t)(p - r->text);
 		err = note_label(r, l, end);
-		l.at = nc_line_next(end, r->end);
+		p = nc_line_next(end, r->end);
 	}
 	return err;
 }
 
-/* The first word of the line, among those that must not stand in front of an
- * O. */
-static const uint8_t *first_word(const struct nc_block *b)
+void nc_forget_labels(struct nc_reader *r)
+{
+	free(r->labels);
+	free(r->named);
+}
+
+/* A % alone on its line. */
+static bool is_percent(const uint8_t *p, const uint8_t *end)
+{
+	p = nc_skip_void(p + 1, end);
+	return p == end || *p == ';';
+}
+
+const uint8_t *nc_tape_end(const uint8_t *text, const uint8_t *end)
+{
+	const uint8_t *p = text, *stop = text, *line;
+	bool begun = false;
+
+	for (; p < end && !begun; p = nc_line_next(stop, end)) {
+		stop = nc_line_end(p, end);
+		p = nc_skip_void(p, stop);
+		begun = p < stop && *p != ';' && *p != '/';
+	}
+	while (p < end && (p = memchr(p, '%', (size_t)(end - p)))) {
+		for (line = p; nc_classes[line[-1]] != NC_EOL; line--)
+			;
+		stop = nc_line_end(p, end);
+		if (nc_skip_void(line, stop) == p)
+			return is_percent(p, stop) ? p : stop;
+		p = stop;
+	}
+	return end;
+}
+
+/* -- Calls and returns ---------------------------------------------------- */
+
+/* Does a word that must not stand in front of an O stand in front of @at? */
+static bool is_behind(const struct nc_block *b, const uint8_t *at)
 {
 	const uint32_t codes = ~(NC_BIT(NC_LABEL) | NC_BIT(NC_FEED));
-	const uint8_t *at = b->at[NC_O];
 
 	for (int i = 0; i < NC_NSLOTS; i++) {
 		if ((b->words & NC_BIT(i)) && i != NC_N && b->at[i] < at)
-			at = b->at[i];
+			return true;
 	}
 	for (int i = 0; i < NC_NGROUPS; i++) {
 		if ((b->groups & codes & NC_BIT(i)) && b->code_at[i] < at)
-			at = b->code_at[i];
+			return true;
 	}
-	return at;
+	return false;
 }
 
 int nc_run_label(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
-	const uint8_t *at = b->at[NC_O];
+	const uint8_t *at = b->at[nc_has(r, NC_O) ? NC_O : NC_NAME];
+	struct nc_frame *f = &r->frame[r->depth];
 
-	if (first_word(b) < at)
-		return nc_refuse(r, at, "O as the first word of its line",
-				 "%s behind other words",
+	if (is_behind(b, at))
+		return nc_refuse(r, at, "O or <NAME> as the first word of its "
+				 "line", "%s behind other words",
 				 nc_quote_word(r, at).s);
 	if (!r->fresh)
 		return nc_refuse(r, at, r->depth ?
@@ -176,18 +264,36 @@ int nc_run_label(struct nc_reader *r)
 				 "M2 or M30 at the end of the main program",
 				 "the next program, %s, without an end of this "
 				 "one", nc_quote_word(r, at).s);
-	r->frame[r->depth].number = (uint32_t)b->value[NC_O];
-	r->frame[r->depth].entry = r->line_at;
-	r->frame[r->depth].entry_line = r->line;
+	f->number = nc_has(r, NC_O) ? (uint32_t)b->value[NC_O] : 0;
+	f->entry = nc_this(r);
 	return 0;
 }
 
-static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats,
-		 const uint8_t *at)
+/* Go on in the program that begins at @l. */
+static int enter(struct nc_reader *r, const struct nc_label *l,
+		 uint32_t repeats, const uint8_t *at)
+{
+	struct nc_frame *f = &r->frame[r->depth + 1];
+
+	if (r->depth == INTERP_NC_DEPTH_MAX)
+		return nc_refuse(r, at, "up to 8 calls inside each other",
+				 "a call inside %d others",
+				 INTERP_NC_DEPTH_MAX);
+	*f = (struct nc_frame) { .left = repeats - 1, .entry = l->place,
+				 .back = nc_next(r) };
+	r->depth++;
+	nc_go(r, l->place);
+	r->fresh = true;
+	return 0;
+}
+
+static int enter_number(struct nc_reader *r, uint32_t number,
+			uint32_t repeats, const uint8_t *at)
 {
 	const struct nc_label *l = &r->labels[number];
+	int err;
 
-	if (l->line == 0)
+	if (l->place.line == 0)
 		return nc_refuse(r, at, r->d->label == 'O' ?
 				 "the number of an O word that begins a line "
 				 "of this text" :
@@ -197,7 +303,7 @@ static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats,
 	if (l->second)
 		return nc_refuse(r, at, "a number that one line has",
 				 "a call of N%u, which lines %u and %u have",
-				 number, l->line, l->second);
+				 number, l->place.line, l->second);
 	/* With variables, a recursion may end. */
 	for (uint32_t i = 0; !r->d->macros && i <= r->depth; i++) {
 		if (r->frame[i].number == number)
@@ -205,46 +311,61 @@ static int enter(struct nc_reader *r, uint32_t number, uint32_t repeats,
 					 "recursion: %c%u is being carried out "
 					 "already", r->d->label, number);
 	}
-	if (r->depth == INTERP_NC_DEPTH_MAX)
-		return nc_refuse(r, at, "up to 8 calls inside each other",
-				 "a call inside %d others",
-				 INTERP_NC_DEPTH_MAX);
-	r->frame[++r->depth] = (struct nc_frame) {
-		.number = number, .left = repeats - 1,
-		.entry = l->at, .entry_line = l->line,
-		.back = r->at, .return_line = r->line,
-	};
-	r->at = l->at;
-	r->line = l->line - 1;
-	r->fresh = true;
+	err = enter(r, l, repeats, at);
+	if (err)
+		return err;
+	r->frame[r->depth].number = number;
+	snprintf(r->frame[r->depth].name, sizeof(r->frame[0].name), "%c%u",
+		 r->d->label, number);
 	return 0;
 }
 
 int nc_call(struct nc_reader *r, double number, uint32_t times,
 	    const uint8_t *at)
 {
+	int err;
+
 	if (number != floor(number) || !(number >= 1 && number <= LABEL_MAX))
 		return nc_refuse(r, at, "a whole number of 1 to 9999",
 				 "P%g names no subprogram", number);
-	if (!r->labels) {
-		const int err = find_labels(r);
-
-		if (err)
-			return err;
-	}
-	return enter(r, (uint32_t)number, times, at);
+	err = find_labels(r);
+	return err ? err : enter_number(r, (uint32_t)number, times, at);
 }
 
-/* M98 P1000 L3, or P31000: the last four digits are the number. */
+int nc_call_name(struct nc_reader *r, uint32_t times, const uint8_t *at)
+{
+	const struct nc_quote name = nc_quote_word(r, at);
+	const struct nc_label *l;
+	int err = find_labels(r);
+
+	if (err)
+		return err;
+	l = named(r, at);
+	if (!l)
+		return nc_refuse(r, at, "a <NAME> that begins a line of this "
+				 "text; other files are not read",
+				 "a call of %s, which is not there", name.s);
+	err = enter(r, l, times, at);
+	if (!err)
+		snprintf(r->frame[r->depth].name, sizeof(r->frame[0].name),
+			 "%s", name.s);
+	return err;
+}
+
+/* M98 P1000 L3, or P31000: the last four digits are the number; M98 <NAME>. */
 static int call(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
 	const double p = nc_has(r, NC_P) ? b->value[NC_P] : 0;
-	uint32_t number = p > 0 ? (uint32_t)p : 0, repeats = 1;
+	uint32_t number = p > 0 ? (uint32_t)p : 0;
+	uint32_t repeats = nc_has(r, NC_L) ? (uint32_t)b->value[NC_L] : 1;
 
-	if (!nc_has(r, NC_P))
+	if (nc_has(r, NC_P) == nc_has(r, NC_NAME))
 		return nc_refuse(r, b->code_at[NC_STOP], A_CALL,
+				 nc_has(r, NC_P) ? "M98 with P and a <NAME>" :
 				 "M98 without P");
+	if (nc_has(r, NC_NAME))
+		return nc_call_name(r, repeats, b->at[NC_NAME]);
 	if (number > LABEL_MAX && !nc_has(r, NC_L)) {
 		repeats = number / (LABEL_MAX + 1);
 		number %= LABEL_MAX + 1;
@@ -253,24 +374,13 @@ static int call(struct nc_reader *r)
 		return nc_refuse(r, b->at[NC_P], A_CALL,
 				 "%s names no subprogram",
 				 nc_quote_word(r, b->at[NC_P]).s);
-	if (nc_has(r, NC_L))
-		repeats = (uint32_t)b->value[NC_L];
-	if (!r->labels) {
-		const int err = find_labels(r);
-
-		if (err)
-			return err;
-	}
-	return enter(r, number, repeats, b->at[NC_P]);
+	return nc_call(r, number, repeats, b->at[NC_P]);
 }
 
 static void leave(struct nc_reader *r)
 {
-	const struct nc_frame *f = &r->frame[r->depth];
-
 	nc_macro_leave(r);
-	r->at = f->back;
-	r->line = f->return_line;
+	nc_go(r, r->frame[r->depth].back);
 	r->depth--;
 }
 
@@ -304,8 +414,7 @@ static int back(struct nc_reader *r)
 				 "M99 outside a subprogram");
 	if (f->left > 0) {
 		f->left--;
-		r->at = f->entry;
-		r->line = f->entry_line - 1;
+		nc_go(r, f->entry);
 		r->fresh = true;
 		return 0;
 	}
@@ -313,28 +422,27 @@ static int back(struct nc_reader *r)
 	return 0;
 }
 
-/* Has a line words that would be carried out?  Of what has none: comments,
- * the end of a tape, the bytes with which a file is filled up. */
+/* Has a line words that would be carried out, or a % that ends nothing because
+ * words follow it?  Of what has none: comments, the bytes with which a file is
+ * filled up. */
 static bool has_words(const uint8_t *p, const uint8_t *end)
 {
 	p = nc_skip_void(p, end);
-	return p < end && isalpha(*p);
+	return p < end && (isalpha(*p) || *p == '%');
 }
 
 /* Behind the end there may be subprograms.  Other words are a second program,
  * or the end came too early. */
 static void note_rest(struct nc_reader *r)
 {
-	const char *label = r->d->label == 'N' ? "Nn" : "Oo";
 	const uint8_t *p = r->at, *end;
 	uint32_t line = r->line + 1;
 
 	for (; p < r->end; p = nc_line_next(end, r->end), line++) {
 		end = nc_line_end(p, r->end);
 		p = nc_skip_void(p, end);
-		if (ends_tape(p, end))
-			return;
-		if (p < end && (strchr(label, *p) || nc_label_at(r, p, end)))
+		if (p < end && (strchr(r->d->label == 'N' ? "Nn" : "Oo", *p) ||
+				nc_begins_program(r, p, end)))
 			return;
 		if (has_words(p, end)) {
 			nc_note_rest(r, line);
@@ -345,9 +453,9 @@ static void note_rest(struct nc_reader *r)
 
 static int finish(struct nc_reader *r)
 {
-	if (r->depth == 0 && !r->over)
+	if (r->depth == 0)
 		note_rest(r);
-	r->over = NC_FINISHED;
+	r->over = true;
 	r->word.line = r->line;
 	return contour_action(&r->contour, INTERP_END, 0, &r->word, r->diag);
 }
@@ -378,15 +486,15 @@ int nc_run_stop(struct nc_reader *r)
 
 int nc_end_of_text(struct nc_reader *r)
 {
-	if (r->depth > 0 && r->over != NC_FINISHED)
+	if (r->depth > 0 && !r->over)
 		return nc_refuse_at(r, r->line,
 				    "M99 at the end of a subprogram",
-				    "the end of the text inside %c%u",
-				    r->d->label, r->frame[r->depth].number);
-	if (r->d->m2_ends && r->over != NC_FINISHED)
+				    "the end of the text inside %s",
+				    r->frame[r->depth].name);
+	if (r->d->m2_ends && !r->over)
 		return nc_refuse_at(r, r->line, "M02 at the end",
 				    "the end of the text without M02");
-	if (r->curve.open && r->over != NC_FINISHED)
+	if (r->curve.open && !r->over)
 		return nc_refuse_at(r, r->curve.line,
 				    r->curve.open != NC_NURBS_BLOCK ?
 				    "all its knots, in blocks of their own" :

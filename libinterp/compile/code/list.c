@@ -97,9 +97,6 @@ void nc_list_refusals(struct nc_reader *r)
 			r->at = nc_line_next(end, r->end);
 		else
 			look_at(r, end);
-		if (nc_has_group(r, NC_TAPE) && r->tape)
-			break;
-		r->tape |= nc_has_group(r, NC_TAPE);
 	}
 	if (!r->first_told)
 		say(r, &r->first);

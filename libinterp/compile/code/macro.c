@@ -96,10 +96,10 @@ bool nc_macro_wanted(const struct nc_reader *r, const uint8_t *p,
 /* -- The buffer ----------------------------------------------------------- */
 
 static int put(struct macro_line *l, const uint8_t *at, const char *text,
-	       size_t n)
+	       size_t n, unsigned int computed)
 {
 	struct nc_macro *m = l->m;
-	const size_t column = (size_t)(at - l->r->line_at) + 1;
+	const size_t column = ((size_t)(at - l->r->line_at) + 1) | computed;
 
 	if (m->used + n > MACRO_BUFFER)
 		return macro_refuse(l, at, "a shorter line", "a line of more "
@@ -127,7 +127,7 @@ static int put_number(struct macro_line *l, const uint8_t *at, uint8_t letter,
 		n--;
 	if (text[n - 1] == '.' && !strchr("XYZABCUVIJKRF=", letter))
 		n--;
-	return put(l, at, text, n);
+	return put(l, at, text, n, MACRO_COMPUTED);
 }
 
 /* -- The line ------------------------------------------------------------- */
@@ -218,7 +218,7 @@ int macro_assign(struct macro_line *l)
 		return macro_refuse(l, l->p, "#1 = ... behind THEN",
 				    "THEN without an assignment");
 	err = read_assigned(l, &a);
-	return err ? err : do_assign(l, &a);
+	return err || l->idle ? err : do_assign(l, &a);
 }
 
 static int copy_through(struct macro_line *l, const uint8_t *to)
@@ -226,7 +226,7 @@ static int copy_through(struct macro_line *l, const uint8_t *to)
 	int err = 0;
 
 	for (; !err && l->p < to; l->p++)
-		err = put(l, l->p, (const char *)l->p, 1);
+		err = put(l, l->p, (const char *)l->p, 1, 0);
 	return err;
 }
 
@@ -299,7 +299,7 @@ int nc_macro_line(struct nc_reader *r, const uint8_t *at, const uint8_t *end)
 	}
 	if (err < 0)
 		return err;
-	err = put(&l, end, "\n", 1);
+	err = put(&l, end, "\n", 1, 0);
 	return err ? err : 1;
 }
 

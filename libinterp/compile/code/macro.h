@@ -29,6 +29,7 @@
 #define MACRO_NAMED_MAX	256
 #define MACRO_NAME_MAX	32
 #define MACRO_BUFFER	8192
+#define MACRO_COMPUTED	0x8000u		/* a column where a value was written */
 #define MACRO_BRACKETS	32
 #define MACRO_LOOPS	16
 #define MACRO_OWORDS_MAX 100000
@@ -40,8 +41,7 @@ struct macro_loop {
 					 * word */
 	uint32_t depth;			/* frame it is in */
 	uint32_t left;			/* rounds of a repeat */
-	const uint8_t *at;		/* its line */
-	uint32_t line;
+	struct nc_place place;
 };
 
 struct macro_named {
@@ -60,9 +60,8 @@ enum oword_kind {
 /* The place of an o word. */
 struct oword {
 	char name[MACRO_NAME_MAX];
-	const uint8_t *at;		/* its line */
-	const uint8_t *behind;		/* its keyword */
-	uint32_t line;
+	struct nc_place place;
+	uint32_t behind;		/* where its keyword ends in its line */
 	uint8_t kind;			/* enum oword_kind */
 };
 
@@ -81,9 +80,10 @@ struct nc_macro {
 					 * yet */
 	uint32_t nowords;
 
+	struct nc_place place;		/* of the line in the buffer */
 	uint8_t text[MACRO_BUFFER];
-	uint16_t column[MACRO_BUFFER + 1];	/* column of each byte, from
-						 * 1 */
+	uint16_t column[MACRO_BUFFER + 1];	/* column of each byte, from 1;
+						 * with MACRO_COMPUTED */
 	size_t used;
 };
 
@@ -93,6 +93,8 @@ struct macro_line {
 	struct nc_macro *m;
 	const uint8_t *p, *end;		/* its rest */
 	int brackets;
+	bool idle;			/* what is read is not done, and its
+					 * values are not known */
 	double parts;			/* ROUND rounds to 1 / parts; 0: to
 					 * whole numbers */
 };
@@ -136,6 +138,8 @@ int macro_truth(struct macro_line *l, bool *ret);	/* a bracket */
 int macro_get(struct macro_line *l, const uint8_t *at, double number,
 	      double *ret);
 int macro_set(struct macro_line *l, const uint8_t *at, double number, double v);
+int macro_get_named(struct macro_line *l, const uint8_t *at, const char *name,
+		    double *ret);
 struct macro_named *macro_find(struct nc_macro *m, const char *name);
 int macro_name(struct macro_line *l, char name[MACRO_NAME_MAX]); /* at the < */
 int macro_set_named(struct macro_line *l, const uint8_t *at, const char *name,
@@ -153,10 +157,10 @@ int macro_assign(struct macro_line *l);	/* one #.. = .., at the # */
 /* oword.c: the same. */
 int macro_oword(struct macro_line *l);
 
+/* A comment may stand wherever a blank may. */
 static inline void macro_blanks(struct macro_line *l)
 {
-	while (l->p < l->end && (*l->p == ' ' || *l->p == '\t'))
-		l->p++;
+	l->p = nc_skip_void(l->p, l->end);
 }
 
 /**

@@ -99,6 +99,8 @@ static int apply(struct macro_line *l, const uint8_t *at, size_t i,
 	const double x = number(*a), y = number(b);
 	const uint8_t op = ops[i].op;
 
+	if (l->idle)
+		return 0;
 	if ((op == DIV || op == MOD) && y == 0)
 		return macro_refuse(l, at, "a divisor other than 0",
 				    "a division by 0");
@@ -291,7 +293,7 @@ static int power(struct macro_line *l, double *ret)
 	if (err)
 		return err;
 	*ret = pow(number(*ret), number(to));
-	return isfinite(*ret) ? 0 :
+	return l->idle || isfinite(*ret) ? 0 :
 	       macro_refuse(l, at, "a number", "POW, which comes to none");
 }
 
@@ -337,7 +339,7 @@ static int function(struct macro_line *l, double *ret)
 		if (err)
 			return err;
 		*ret = rounded(l, f, number(v));
-		return isfinite(*ret) ? 0 :
+		return l->idle || isfinite(*ret) ? 0 :
 		       macro_refuse(l, at, "a value the function has",
 				    "%s[%g]", functions[i].name, v);
 	}
@@ -350,7 +352,6 @@ static int variable(struct macro_line *l, double *ret)
 {
 	char name[MACRO_NAME_MAX];
 	const uint8_t *at = l->p++;
-	const struct macro_named *n;
 	const double parts = l->parts;
 	double which;
 	int err;
@@ -358,12 +359,7 @@ static int variable(struct macro_line *l, double *ret)
 	macro_blanks(l);
 	if (!is_fanuc(l) && l->p < l->end && *l->p == '<') {
 		err = macro_name(l, name);
-		n = err ? NULL : macro_find(l->m, name);
-		if (n)
-			*ret = n->value;
-		return err || n ? err :
-		       macro_refuse(l, at, "a parameter that has been given a "
-				    "value", "#<%s>, which has none", name);
+		return err ? err : macro_get_named(l, at, name, ret);
 	}
 	if (++l->brackets > MACRO_BRACKETS)
 		return macro_refuse(l, at, "up to 32 of them", "a # too many");
@@ -371,7 +367,8 @@ static int variable(struct macro_line *l, double *ret)
 	err = macro_value(l, &which);
 	l->parts = parts;
 	l->brackets--;
-	return err ? err : macro_get(l, at, number(which), ret);
+	*ret = 0;
+	return err || l->idle ? err : macro_get(l, at, number(which), ret);
 }
 
 int macro_value(struct macro_line *l, double *ret)

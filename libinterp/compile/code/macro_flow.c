@@ -32,12 +32,6 @@ static int count(struct macro_line *l, const uint8_t *at)
 			    l->r->executed_max);
 }
 
-/* A line of the present program, while it is searched. */
-struct place {
-	const uint8_t *at;
-	uint32_t line;
-};
-
 /* A line that is searched for: does @match say yes to it and @n? */
 struct sought {
 	bool (*match)(const uint8_t *p, const uint8_t *end, uint32_t n);
@@ -47,7 +41,7 @@ struct sought {
 static const uint8_t *behind_n(const uint8_t *p, const uint8_t *end,
 			       uint64_t *n)
 {
-	p = nc_skip_blanks(p, end);
+	p = nc_skip_void(p, end);
 	if (p == end || (*p | 0x20) != 'n')
 		return p;
 	return nc_digits(nc_skip_blanks(p + 1, end), end, n);
@@ -55,12 +49,11 @@ static const uint8_t *behind_n(const uint8_t *p, const uint8_t *end,
 
 static bool is_n(const uint8_t *p, const uint8_t *end, uint32_t n)
 {
-	uint64_t found = UINT64_MAX;
-	const uint8_t *first = nc_skip_blanks(p, end);
+	uint64_t found = 0;
+	const uint8_t *first = nc_skip_void(p, end);
 
 	if (first == end || (*first | 0x20) != 'n')
 		return false;
-	found = 0;
 	return behind_n(p, end, &found) > first + 1 && found == n;
 }
 
@@ -76,35 +69,32 @@ static bool is_end(const uint8_t *p, const uint8_t *end, uint32_t n)
 }
 
 /* Search from @from up to @stop, or up to the beginning of another program. */
-static int search(struct macro_line *l, struct place from, const uint8_t *stop,
-		  const struct sought *sought, struct place *ret)
+static int search(struct macro_line *l, struct nc_place from,
+		  const uint8_t *stop, const struct sought *sought,
+		  struct nc_place *ret)
 {
 	struct nc_reader *r = l->r;
+	const uint8_t *p = r->text + from.offset;
 	int err = 0;
 
-	ret->at = NULL;
-	while (!err && from.at < stop) {
-		const uint8_t *end = nc_line_end(from.at, r->end);
+	ret->line = 0;
+	while (!err && p < stop) {
+		const uint8_t *end = nc_line_end(p, r->end);
 
+		from.offset = (size_t)(p - r->text);
 		err = count(l, l->p);
-		nc_count_bytes(r, (size_t)(end - from.at), NC_COUNTED_BYTES);
-		if (from.at != r->frame[r->depth].entry &&
-		    nc_label_at(r, from.at, end))
+		nc_count_bytes(r, (size_t)(end - p), NC_COUNTED_BYTES);
+		if (from.offset != r->frame[r->depth].entry.offset &&
+		    nc_begins_program(r, p, end))
 			return err;
-		if (sought->match(from.at, end, sought->n)) {
+		if (sought->match(p, end, sought->n)) {
 			*ret = from;
 			return err;
 		}
-		from.at = nc_line_next(end, r->end);
+		p = nc_line_next(end, r->end);
 		from.line++;
 	}
 	return err;
-}
-
-static void go(struct nc_reader *r, struct place to)
-{
-	r->at = to.at;
-	r->line = to.line - 1;
 }
 
 /* Search forward to the end of the program, and then from its beginning. */
@@ -112,13 +102,9 @@ static int jump(struct macro_line *l, const uint8_t *at, const char *word,
 		double n)
 {
 	struct nc_reader *r = l->r;
-	const struct nc_frame *f = &r->frame[r->depth];
-	const struct place next = { r->at, r->line + 1 };
-	const struct place first = f->entry ?
-		(struct place) { f->entry, f->entry_line } :
-		(struct place) { r->text, 1 };
+	const struct nc_place next = nc_next(r);
 	struct sought sought = { .match = is_n };
-	struct place to;
+	struct nc_place to;
 	int err;
 
 	if (isnan(n))
@@ -129,18 +115,18 @@ static int jump(struct macro_line *l, const uint8_t *at, const char *word,
 				    "%s%g", word, n);
 	sought.n = (uint32_t)n;
 	err = search(l, next, r->end, &sought, &to);
-	if (!err && !to.at)
-		err = search(l, first, next.at, &sought, &to);
+	if (!err && !to.line)
+		err = search(l, r->frame[r->depth].entry, r->at, &sought, &to);
 	if (err)
 		return err;
-	if (!to.at)
+	if (!to.line)
 		return macro_refuse(l, at,
 				    "the number of an N word that begins a "
 				    "line of this program",
 				    "%s%g, which is not there", word, n);
-	if (to.at < next.at)
+	if (to.offset < next.offset)
 		err = macro_round(l, at);
-	go(r, to);
+	nc_go(r, to);
 	return err;
 }
 
@@ -149,7 +135,7 @@ static int go_to(struct macro_line *l, const uint8_t *at)
 	double n;
 	int err = macro_value(l, &n);
 
-	if (!err)
+	if (!err && !l->idle)
 		err = jump(l, at, "GOTO ", n);
 	return err ? err : 1;
 }
@@ -182,19 +168,15 @@ static int take_if(struct macro_line *l, const uint8_t *at)
 
 	if (err)
 		return err;
-	if (macro_word(l, "GOTO")) {
-		if (truth)
-			return go_to(l, at);
-	} else if (!macro_word(l, "THEN")) {
+	/* What is not done is read all the same, up to its end. */
+	l->idle = !truth;
+	if (macro_word(l, "GOTO"))
+		return go_to(l, at);
+	if (!macro_word(l, "THEN"))
 		return macro_refuse(l, l->p, "GOTO or THEN behind IF [ ]",
 				    "an IF without either");
-	} else if (truth) {
-		err = macro_assign(l);
-		return err ? err : 1;
-	}
-	/* What is not done is not looked at. */
-	l->p = l->end;
-	return 1;
+	err = macro_assign(l);
+	return err ? err : 1;
 }
 
 /* -- Loops ---------------------------------------------------------------- */
@@ -238,8 +220,7 @@ static int begin_loop(struct macro_line *l, const uint8_t *at, uint32_t id)
 	if (!loop)
 		loop = &l->m->loop[l->m->nloops++];
 	*loop = (struct macro_loop) {
-		.id = id, .depth = l->r->depth, .at = l->r->line_at,
-		.line = l->r->line,
+		.id = id, .depth = l->r->depth, .place = nc_this(l->r),
 	};
 	return 1;
 }
@@ -248,7 +229,7 @@ static int begin_loop(struct macro_line *l, const uint8_t *at, uint32_t id)
 static int take_while(struct macro_line *l, const uint8_t *at, bool truth)
 {
 	struct nc_reader *r = l->r;
-	struct place next = { r->at, r->line + 1 }, to;
+	struct nc_place to;
 	struct sought sought = { .match = is_end };
 	int err = take_number(l, &sought.n);
 
@@ -256,15 +237,14 @@ static int take_while(struct macro_line *l, const uint8_t *at, bool truth)
 		return err;
 	if (truth)
 		return begin_loop(l, at, sought.n);
-	err = search(l, next, r->end, &sought, &to);
+	err = search(l, nc_next(r), r->end, &sought, &to);
 	if (err)
 		return err;
-	if (!to.at)
+	if (!to.line)
 		return macro_refuse(l, at, "END with the number of its DO, in "
 				    "the same program", "a WHILE without END%u",
 				    sought.n);
-	r->at = nc_line_next(nc_line_end(to.at, r->end), r->end);
-	r->line = to.line;
+	nc_go_behind(r, to);
 	return 1;
 }
 
@@ -281,7 +261,7 @@ static int take_end(struct macro_line *l, const uint8_t *at)
 		return macro_refuse(l, at, "WHILE [ ] DO or DO before it",
 				    "END%u of no loop", id);
 	err = macro_round(l, at);
-	go(l->r, (struct place) { loop->at, loop->line });
+	nc_go(l->r, loop->place);
 	return err ? err : 1;
 }
 
@@ -300,6 +280,7 @@ static const uint8_t argument[26] = {
 struct call {
 	double local[MACRO_LOCALS];
 	double number, times;		/* P and L */
+	const uint8_t *name;		/* <NAME>; NULL: P has its number */
 	uint32_t triples;		/* how many groups of I J K began */
 	uint8_t last;			/* the last of I J K */
 };
@@ -332,13 +313,33 @@ static bool wants_point(const struct macro_line *l, const uint8_t *at, double v)
 	return true;
 }
 
+/* Return: 1: there is a <NAME>. */
+static int take_name(struct macro_line *l, struct call *c)
+{
+	const uint8_t *at = l->p, *p;
+
+	if (*at != '<' || l->r->d->classes['<'] != NC_LETTER_NAME)
+		return 0;
+	p = nc_name_end(at, l->end);
+	if (!p || c->name || c->number != 0)
+		return macro_refuse(l, at, "one program, by P or by <NAME>",
+				    p ? "a second program behind G65" :
+				    "a program's name without an end");
+	c->name = at;
+	l->p = p;
+	return 1;
+}
+
 static int take_argument(struct macro_line *l, struct call *c)
 {
-	const uint8_t *at = l->p, letter = (uint8_t)toupper(*l->p++);
+	const uint8_t *at = l->p, letter = (uint8_t)toupper(*at);
 	uint32_t which = 0;
 	double v;
-	int err;
+	int err = take_name(l, c);
 
+	if (err)
+		return err < 0 ? err : 0;
+	l->p++;
 	if (letter >= 'A' && letter <= 'Z')
 		which = variable_of(c, letter);
 	if (which >= MACRO_LOCALS || (!which && letter != 'P' && letter != 'L'))
@@ -361,7 +362,9 @@ static int take_argument(struct macro_line *l, struct call *c)
 		c->local[which] = v;
 	else
 		*(letter == 'P' ? &c->number : &c->times) = v;
-	return 0;
+	return c->name && c->number != 0 ?
+	       macro_refuse(l, at, "one program, by P or by <NAME>",
+			    "a second program behind G65") : 0;
 }
 
 static int take_call(struct macro_line *l, const uint8_t *at)
@@ -380,7 +383,8 @@ static int take_call(struct macro_line *l, const uint8_t *at)
 		err = take_argument(l, &c);
 	}
 	if (!err)
-		err = nc_call(r, c.number, (uint32_t)c.times, at);
+		err = c.name ? nc_call_name(r, (uint32_t)c.times, c.name) :
+		      nc_call(r, c.number, (uint32_t)c.times, at);
 	if (err)
 		return err;
 	m->level++;

@@ -148,6 +148,33 @@ int macro_name(struct macro_line *l, char name[MACRO_NAME_MAX])
 	return 0;
 }
 
+/* LinuxCNC's own: places in the work offset in force, #<_x> to #<_v>. */
+static bool own_place(const struct nc_reader *r, const char *name, double *ret)
+{
+	const char *axis = name[0] == '_' && name[1] && !name[2] ?
+			   strchr(INTERP_AXIS_LETTERS, toupper(name[1])) : NULL;
+
+	return axis && position(r, (uint32_t)(axis - INTERP_AXIS_LETTERS), 0,
+				false, ret);
+}
+
+int macro_get_named(struct macro_line *l, const uint8_t *at, const char *name,
+		    double *ret)
+{
+	const struct macro_named *n = macro_find(l->m, name);
+
+	if (n)
+		*ret = n->value;
+	else if (!own_place(l->r, name, ret))
+		return macro_refuse(l, at, name[0] == '_' ?
+				    "a parameter that the program has given a "
+				    "value; of LinuxCNC's own, places: #<_x> "
+				    "... #<_v>" :
+				    "a parameter that has been given a value",
+				    "#<%s>, which has no value", name);
+	return 0;
+}
+
 struct macro_named *macro_find(struct nc_macro *m, const char *name)
 {
 	const uint32_t level = name[0] == '_' ? 0 : m->level + 1;
@@ -165,7 +192,11 @@ int macro_set_named(struct macro_line *l, const uint8_t *at, const char *name,
 {
 	struct nc_macro *m = l->m;
 	struct macro_named *n = macro_find(m, name);
+	double own;
 
+	if (own_place(l->r, name, &own))
+		return macro_refuse(l, at, "another name", "a value for #<%s>, "
+				    "which is a place of the machine", name);
 	if (!n && m->nnamed == MACRO_NAMED_MAX)
 		return macro_refuse(l, at, "up to 256 names", "#<%s>, a name "
 				    "too many", name);

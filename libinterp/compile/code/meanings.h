@@ -104,7 +104,8 @@
 	W("stop", STOP, NC_HALT, 0) \
 	W("optional-stop", STOP, NC_OPTIONAL_HALT, 0) \
 	W("end", STOP, NC_FINISH, 0) \
-	W("call", STOP, NC_CALL, NC_BIT(NC_P) | NC_BIT(NC_L)) \
+	W("call", STOP, NC_CALL, \
+	  NC_BIT(NC_P) | NC_BIT(NC_L) | NC_BIT(NC_NAME)) \
 	W("return", STOP, NC_RETURN, NC_BIT(NC_P))
 
 #endif /* CODE_MEANINGS_H */

@@ -25,19 +25,6 @@ void nc_set_offset(struct nc_reader *r)
 	}
 }
 
-/* The first % begins the text, and the second ends it. */
-static int run_tape(struct nc_reader *r)
-{
-	if (r->block.words || r->block.groups != NC_BIT(NC_TAPE))
-		return nc_refuse(r, r->block.code_at[NC_TAPE],
-				 "% alone on its line", "words behind %%");
-	if (r->fresh && !r->tape)
-		r->tape = true;
-	else
-		r->over = NC_TAPE_ENDED;
-	return 0;
-}
-
 static int run_units(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
@@ -108,14 +95,35 @@ static int run_mcode_after(struct nc_reader *r)
 	return nc_run_mcode(r, NC_MCODE_AFTER);
 }
 
+/* M3 too, but an electrode that nothing makes negative is positive. */
+static int check_polarity(struct nc_reader *r)
+{
+	struct interp_tech t;
+
+	if (r->block.code[NC_POWER]->value != INTERP_AUX_POWER_NEGATIVE)
+		return 0;
+	interp_tech_clear(&t);
+	t.v[INTERP_TECH_POLARITY] = -1;
+	return nc_refuse_undelivered(r, &t, "a negative electrode",
+				     r->block.code_at[NC_POWER]);
+}
+
 static int run_power(struct nc_reader *r)
 {
+	if (check_polarity(r))
+		return -EINVAL;
 	return nc_action(r, INTERP_AUX, r->block.code[NC_POWER]->value,
 			 r->block.code_at[NC_POWER]);
 }
 
 static int run_pump(struct nc_reader *r)
 {
+	const struct interp_delivery *d = r->o->delivery;
+
+	if (d && d->no_pump &&
+	    r->block.code[NC_PUMP]->value == INTERP_AUX_PUMP_ON)
+		return nc_refuse(r, r->block.code_at[NC_PUMP], d->no_pump,
+				 "the pump, which nothing switches on");
 	return nc_action(r, INTERP_AUX, r->block.code[NC_PUMP]->value,
 			 r->block.code_at[NC_PUMP]);
 }
@@ -150,7 +158,6 @@ static int run_machine(struct nc_reader *r)
 }
 
 static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
-	[NC_TAPE]		= run_tape,
 	[NC_LABEL]		= nc_run_label,
 	[NC_UNITS]		= run_units,
 	[NC_PLANE]		= run_plane,
@@ -191,12 +198,37 @@ int nc_run_groups(struct nc_reader *r, uint32_t groups)
 	return 0;
 }
 
+/* Letters that mean something with a word elsewhere, and nothing here. */
+static const struct stray {
+	uint8_t slot, group, least, most;	/* value of the word's code */
+	const char *what, *wanted;
+} strays[] = {
+	{ NC_P, NC_MOTION, 2, 3, "turns of an arc, in LinuxCNC",
+	  "an arc without P, once for each turn" },
+	{ NC_R, NC_ONE_SHOT, NC_WRITE, NC_WRITE,
+	  "it turns the work offset, in LinuxCNC",
+	  "G10 without R, and places that are turned" },
+	{ NC_UJ, NC_STOP, NC_CALL, NC_CALL,
+	  "in this dialect the centre of the top's arc, not how often",
+	  "M98 P21000 for two times O1000, or G65 P1000 L2" },
+};
+
 /* Words that have no use on this line are a mistake, so the line is refused. */
 static int refuse_leftover(struct nc_reader *r, uint32_t left)
 {
 	const int slot = __builtin_ctz(left);
 	const uint8_t *at = r->block.at[slot];
 
+	for (size_t i = 0; i < sizeof(strays) / sizeof(strays[0]); i++) {
+		const struct stray *s = &strays[i];
+		const struct nc_code *code = nc_has_group(r, s->group) ?
+					     r->block.code[s->group] : NULL;
+
+		if (s->slot == slot && code && code->value >= s->least &&
+		    code->value <= s->most)
+			return nc_refuse(r, at, s->wanted, "%s: %s",
+					 nc_quote_word(r, at).s, s->what);
+	}
 	return nc_refuse(r, at, nc_words[slot].goes_with,
 			 "%s has no use on this line", nc_quote_word(r, at).s);
 }
@@ -321,7 +353,7 @@ int nc_check_line(struct nc_reader *r)
 
 int nc_run_line(struct nc_reader *r)
 {
-	const uint32_t first = NC_BIT(NC_TAPE) | NC_BIT(NC_LABEL);
+	const uint32_t first = NC_BIT(NC_LABEL);
 	struct nc_block *b = &r->block;
 	int err = nc_check_line(r);
 
@@ -338,7 +370,7 @@ int nc_run_line(struct nc_reader *r)
 		if (err)
 			return err;
 	}
-	if ((b->words | b->groups) && !nc_has_group(r, NC_TAPE))
+	if (b->words | b->groups)
 		r->fresh = false;
 	return nc_run_groups(r, b->groups & ~first);
 }

@@ -67,19 +67,18 @@ void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES])
 	target(r, ret_end_mm);
 }
 
-/* F is in degrees per minute if only rotary axes move; inches do not apply to
- * them. */
-static double feed_for(const struct nc_reader *r,
-		       const double end_mm[INTERP_NAXES])
+/* Do only rotary axes move on a line to @end_mm? */
+static bool is_rotary(const struct nc_reader *r,
+		      const double end_mm[INTERP_NAXES])
 {
 	const double *here = nc_here(r);
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (!interp_axis_is_rotary((enum interp_axis)i) &&
 		    end_mm[i] != here[i])
-			return r->feed_mm_s;
+			return false;
 	}
-	return r->feed_deg_s;
+	return true;
 }
 
 static int refuse_feed(struct nc_reader *r)
@@ -94,21 +93,19 @@ static int refuse_feed(struct nc_reader *r)
 			 "a motion at a feed, and no feed given yet");
 }
 
-static inline int word(struct nc_reader *r, const double end_mm[INTERP_NAXES],
-		       bool rapid)
+static inline int word(struct nc_reader *r, bool turns, bool rapid)
 {
 	r->word.line = r->line;
 	r->word.rapid = rapid;
 	if (rapid)
 		return 0;
-	r->word.feed_mm_s = r->feed_mm_s == r->feed_deg_s ? r->feed_mm_s :
-			    feed_for(r, end_mm);
+	r->word.feed_mm_s = turns ? r->feed_deg_s : r->feed_mm_s;
 	return r->word.feed_mm_s > 0 ? 0 : refuse_feed(r);
 }
 
-int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid)
+int nc_word(struct nc_reader *r, bool turns, bool rapid)
 {
-	return word(r, end_mm, rapid);
+	return word(r, turns, rapid);
 }
 
 int nc_refuse_room(struct nc_reader *r)
@@ -171,7 +168,8 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 static inline int line_to(struct nc_reader *r,
 			  const double end_mm[INTERP_NAXES], bool rapid)
 {
-	int err = word(r, end_mm, rapid);
+	int err = word(r, r->feed_mm_s != r->feed_deg_s &&
+			  is_rotary(r, end_mm), rapid);
 
 	r->curve.smooth = false;
 	if (!err)

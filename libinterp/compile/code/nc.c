@@ -9,11 +9,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* CP/M and DOS ended a text with ^Z, and some posts still do. */
+/* What a tape or a serial line has around a text: NUL where nothing is punched,
+ * DEL where something was, and DC1 to DC4, which start and stop the other
+ * side.  CP/M and DOS ended a text with ^Z, and some posts still do. */
+static bool is_leader(uint8_t c)
+{
+	return c == 0 || c == 0x7f || (c >= 0x11 && c <= 0x14);
+}
+
 static const uint8_t *end_of(const uint8_t *text, const uint8_t *end)
 {
 	for (const uint8_t *p = end; p > text; p--) {
-		if (p[-1] == 0x1a)
+		if (p[-1] == 0x1a || is_leader(p[-1]))
 			end = p - 1;
 		else if (nc_classes[p[-1]] != NC_BLANK &&
 			 nc_classes[p[-1]] != NC_EOL)
@@ -29,8 +36,13 @@ static void open_text(struct nc_reader *r, const char *text, size_t bytes)
 	r->end = end_of(r->text, r->text + bytes);
 	if (bytes >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0)
 		r->text += 3;
+	while (r->text < r->end && is_leader(*r->text))
+		r->text++;
+	r->text_end = r->end;
+	r->end = nc_tape_end(r->text, r->end);
 	r->at = r->text;
 	r->line_at = r->text;
+	r->frame[0].entry = (struct nc_place) { .line = 1 };
 }
 
 /* If a program has no feed, the gap is what limits the speed. */
@@ -118,11 +130,12 @@ static int read_lines(struct nc_reader *r)
  * the rest. */
 static uint32_t count_lines(const struct nc_reader *r)
 {
-	const uint8_t *p = r->depth ? r->frame[1].back : r->at;
-	uint32_t n = r->depth ? r->frame[1].return_line : r->line;
+	const struct nc_place next = r->depth ? r->frame[1].back : nc_next(r);
+	const uint8_t *p = r->text + next.offset;
+	uint32_t n = next.line - 1;
 
-	for (; p < r->end; n++)
-		p = nc_line_next(nc_line_end(p, r->end), r->end);
+	for (; p < r->text_end; n++)
+		p = nc_line_next(nc_line_end(p, r->text_end), r->text_end);
 	return n;
 }
 
@@ -153,9 +166,9 @@ int interp_nc_compile(const struct interp_text *text,
 		ret->lines = count_lines(&r);
 		ret->executed = r.executed;
 	}
-	free(r.labels);
 	if (err == -EINVAL && o->refused)
 		nc_list_refusals(&r);
+	nc_forget_labels(&r);
 	nc_macro_free(&r);
 	nc_curve_free(&r.curve);
 	nc_forget_conditions(&r);

@@ -68,6 +68,24 @@ void nc_note_skipped(struct nc_reader *r)
 		    "delete switched on");
 }
 
+void nc_note_columns(struct nc_reader *r, char letter, uint32_t number)
+{
+	char name[16];
+
+	if (r->o->notes && r->o->notes->plan && !told(r, NC_TOLD_COLUMNS))
+		say(r, "the numbers behind %s have no effect: the technology "
+		    "table has no line inline %c, which says what each of them "
+		    "means", interp_tech_name(letter, number, name,
+					      sizeof(name)), letter);
+}
+
+void nc_note_title(struct nc_reader *r)
+{
+	if (r->o->notes)
+		say(r, "%% begins the text; what stands behind it on its line "
+		    "is its title, and is not carried out");
+}
+
 void nc_note_print(struct nc_reader *r, const char *word)
 {
 	if (r->o->notes && !told(r, NC_TOLD_PRINT))

@@ -99,10 +99,9 @@ void nc_curve_target(const struct nc_reader *r, double ret_mm[INTERP_NAXES])
 			    b->value[i] * r->scale[i];
 }
 
-/* A curve moves along a line if its control points do. */
-static void set_feed(struct nc_reader *r)
+/* Do only rotary axes move?  A curve moves an axis if its control points do. */
+static bool is_rotary(const struct nc_curve *c)
 {
-	const struct nc_curve *c = &r->curve;
 
 	for (uint32_t i = 1; i < c->npoints; i++) {
 		for (int a = 0; a < INTERP_NAXES; a++) {
@@ -112,10 +111,10 @@ static void set_feed(struct nc_reader *r)
 			    row[a] == c->points[a] * row[INTERP_NAXES] /
 				      c->points[INTERP_NAXES])
 				continue;
-			r->word.feed_mm_s = r->feed_mm_s;
-			return;
+			return false;
 		}
 	}
+	return true;
 }
 
 /* Only differences of knots count.  Far from 0, a short span between them would
@@ -170,7 +169,7 @@ int nc_curve_build(struct nc_reader *r)
 			   .knots = c->knots, .points = c->points },
 		.marks = c->marks, .nmarks = c->npoints,
 	};
-	int err = nc_word(r, c->last_mm, false);
+	int err = nc_word(r, is_rotary(c), false);
 
 	c->open = 0;
 	if (!err)
@@ -179,7 +178,6 @@ int nc_curve_build(struct nc_reader *r)
 		return err;
 	for (uint8_t i = 0; i < INTERP_NAXES; i++)
 		bc.axis[i] = i;
-	set_feed(r);
 	nc_curve_set_marks(c);
 	if (r->tool.on)
 		return nc_tip_curve(r, &bc);

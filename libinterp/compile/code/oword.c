@@ -15,19 +15,22 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Longer words come first where one begins with another. */
+#define ARGUMENTS_MAX	30
+
+/* Each with the brackets that may stand behind it. */
 static const struct {
 	const char *word;
-	uint8_t kind;
-} words[] = {
-	{ "SUB", OWORD_SUB }, { "ENDSUB", OWORD_ENDSUB },
-	{ "CALL", OWORD_CALL }, { "RETURN", OWORD_RETURN },
-	{ "IF", OWORD_IF }, { "ELSEIF", OWORD_ELSEIF },
-	{ "ELSE", OWORD_ELSE }, { "ENDIF", OWORD_ENDIF },
-	{ "WHILE", OWORD_WHILE }, { "ENDWHILE", OWORD_ENDWHILE },
-	{ "DO", OWORD_DO }, { "REPEAT", OWORD_REPEAT },
-	{ "ENDREPEAT", OWORD_ENDREPEAT },
-	{ "BREAK", OWORD_BREAK }, { "CONTINUE", OWORD_CONTINUE },
+	uint8_t brackets;
+} words[OWORD_NKINDS] = {
+	[OWORD_SUB] = { "SUB", 0 }, [OWORD_ENDSUB] = { "ENDSUB", 1 },
+	[OWORD_CALL] = { "CALL", ARGUMENTS_MAX },
+	[OWORD_RETURN] = { "RETURN", 1 },
+	[OWORD_IF] = { "IF", 1 }, [OWORD_ELSEIF] = { "ELSEIF", 1 },
+	[OWORD_ELSE] = { "ELSE", 0 }, [OWORD_ENDIF] = { "ENDIF", 0 },
+	[OWORD_WHILE] = { "WHILE", 1 }, [OWORD_ENDWHILE] = { "ENDWHILE", 0 },
+	[OWORD_DO] = { "DO", 0 }, [OWORD_REPEAT] = { "REPEAT", 1 },
+	[OWORD_ENDREPEAT] = { "ENDREPEAT", 0 },
+	[OWORD_BREAK] = { "BREAK", 0 }, [OWORD_CONTINUE] = { "CONTINUE", 0 },
 };
 
 #define KIND(kind)	(1u << (kind))
@@ -64,12 +67,12 @@ static int take_name(struct macro_line *l, char name[MACRO_NAME_MAX])
 
 static bool take_kind(struct macro_line *l, uint8_t *ret)
 {
-	for (size_t i = 0; i < sizeof(words) / sizeof(words[0]); i++) {
+	for (uint8_t i = 0; i < OWORD_NKINDS; i++) {
 		const uint8_t *from = l->p;
 
 		if (macro_word(l, words[i].word) &&
 		    (l->p == l->end || !isalpha(*l->p))) {
-			*ret = words[i].kind;
+			*ret = i;
 			return true;
 		}
 		l->p = from;
@@ -95,17 +98,18 @@ static int note(struct macro_line *l, const struct oword *w, size_t *room)
 static int find_all(struct macro_line *at)
 {
 	const struct nc_reader *r = at->r;
-	struct oword w = { .line = 1 };
+	struct oword w = { .place.line = 1 };
 	const uint8_t *p = r->text;
 	size_t room = 0;
 	int err = 0;
 
-	for (; !err && p < r->end; w.line++) {
+	for (; !err && p < r->end; w.place.line++) {
+		const uint8_t *begin = p;
 		struct macro_line l = { .r = at->r, .m = at->m, .p = p,
 					.end = nc_line_end(p, r->end) };
 		struct interp_diag keep = *r->diag;
 
-		w.at = p;
+		w.place.offset = (size_t)(p - r->text);
 		p = nc_line_next(l.end, r->end);
 		if (take_name(&l, w.name) != 1) {
 			*r->diag = keep;
@@ -113,7 +117,7 @@ static int find_all(struct macro_line *at)
 		}
 		if (!take_kind(&l, &w.kind))
 			continue;
-		w.behind = l.p;
+		w.behind = (uint32_t)(l.p - begin);
 		err = note(at, &w, &room);
 	}
 	return err;
@@ -127,9 +131,9 @@ static const uint8_t *word_at(struct macro_line *l, uint32_t i)
 {
 	const struct oword *w = &l->m->oword[i];
 
-	l->r->line_at = w->at;
-	l->r->line = w->line;
-	return w->at;
+	l->r->line_at = l->r->text + w->place.offset;
+	l->r->line = w->place.line;
+	return l->r->line_at;
 }
 
 /* The next o word after @i that has its name and one of @kinds; nowords:
@@ -160,12 +164,7 @@ static int refuse_alone(struct macro_line *l, uint32_t i, const char *other)
 /* Go on at the line of @j, or behind it. */
 static int go(struct macro_line *l, uint32_t j, bool behind)
 {
-	const struct oword *w = &l->m->oword[j];
-	struct nc_reader *r = l->r;
-
-	r->at = behind ? nc_line_next(nc_line_end(w->at, r->end), r->end) :
-			 w->at;
-	r->line = behind ? w->line : w->line - 1;
+	(behind ? nc_go_behind : nc_go)(l->r, l->m->oword[j].place);
 	return 1;
 }
 
@@ -175,6 +174,26 @@ static int skip_to(struct macro_line *l, uint32_t i, uint32_t kinds,
 	const uint32_t j = next_of(l, i, kinds);
 
 	return j < l->m->nowords ? go(l, j, true) : refuse_alone(l, i, other);
+}
+
+/* Behind the keyword there are at most its brackets, also where they are not
+ * looked at. */
+static int check_end(struct macro_line *l, uint8_t kind)
+{
+	const uint8_t *p = nc_skip_void(l->p, l->end);
+	uint32_t n = 0;
+	int err;
+
+	for (; p < l->end && *p == '[' && n < words[kind].brackets; n++) {
+		int depth = 0;
+
+		do {
+			depth += (*p == '[') - (*p == ']');
+			p = nc_skip_void(p + 1, l->end);
+		} while (p < l->end && depth);
+	}
+	err = macro_ends(l, p, l->r->line);
+	return err < 0 ? err : 0;
 }
 
 /* -- if ------------------------------------------------------------------- */
@@ -194,11 +213,11 @@ static int take_if(struct macro_line *l, uint32_t i)
 			return refuse_alone(l, i, "endif");
 		if (l->m->oword[j].kind != OWORD_ELSEIF)
 			return go(l, j, true);
-		other.p = l->m->oword[j].behind;
+		other.p = word_at(l, j) + l->m->oword[j].behind;
 		other.end = nc_line_end(other.p, l->r->end);
-		l->r->line = l->m->oword[j].line;
-		l->r->line_at = l->m->oword[j].at;
-		err = macro_truth(&other, &truth);
+		err = check_end(&other, OWORD_ELSEIF);
+		if (!err)
+			err = macro_truth(&other, &truth);
 	}
 	return err ? err : j == i ? 1 : go(l, j, true);
 }
@@ -331,9 +350,6 @@ static int take_arguments(struct macro_line *l, double *local)
 		macro_blanks(l);
 		if (err || l->p == l->end || *l->p != '[')
 			return err;
-		if (n > 30)
-			return macro_refuse(l, l->p, "up to 30 of them",
-					    "an argument too many");
 		err = macro_bracket(l, &local[n++]);
 	}
 }
@@ -363,10 +379,12 @@ static int take_call(struct macro_line *l, uint32_t i)
 				    "up to 8 calls inside each other",
 				    "a call inside %d others",
 				    INTERP_NC_DEPTH_MAX);
-	r->frame[++r->depth] = (struct nc_frame) {
-		.back = r->at, .return_line = r->line,
-		.entry = all[j].at, .entry_line = all[j].line,
+	r->frame[r->depth + 1] = (struct nc_frame) {
+		.back = nc_next(r), .entry = all[j].place,
 	};
+	r->depth++;
+	snprintf(r->frame[r->depth].name, sizeof(r->frame[0].name), "o%s",
+		 all[j].name);
 	m->level++;
 	m->own_level[r->depth] = true;
 	memcpy(m->local[m->level], local, sizeof(local));
@@ -396,27 +414,9 @@ static int take_return(struct macro_line *l, uint32_t i)
 	if (err)
 		return err;
 	nc_macro_leave(r);
-	r->at = r->frame[r->depth].back;
-	r->line = r->frame[r->depth].return_line;
+	nc_go(r, r->frame[r->depth].back);
 	r->depth--;
 	return 1;
-}
-
-/* Behind the keyword there are at most brackets. */
-static int check_end(struct macro_line *l)
-{
-	const uint8_t *p = nc_skip_void(l->p, l->end);
-
-	while (p < l->end && *p == '[') {
-		int depth = 0;
-
-		do {
-			depth += (*p == '[') - (*p == ']');
-			p++;
-		} while (p < l->end && depth);
-		p = nc_skip_void(p, l->end);
-	}
-	return macro_ends(l, p, l->r->line);
 }
 
 static int carry_out(struct macro_line *l, uint32_t i)
@@ -461,16 +461,16 @@ int macro_oword(struct macro_line *l)
 
 	if (err != 1 || !take_kind(l, &kind))
 		return err < 0 ? err : 0;
-	err = check_end(l);
-	if (err == 1 && !m->oword)
+	err = check_end(l, kind);
+	if (!err && !m->oword)
 		err = find_all(l);
-	if (err < 0)
+	if (err)
 		return err;
 	/* Find the o word of this line. */
 	for (high = m->nowords; low < high; ) {
 		const uint32_t mid = (low + high) / 2;
 
-		if (m->oword[mid].at < l->r->line_at)
+		if (m->oword[mid].place.offset < nc_this(l->r).offset)
 			low = mid + 1;
 		else
 			high = mid;

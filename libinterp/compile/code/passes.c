@@ -81,8 +81,9 @@ int nc_cavity(struct nc_reader *r)
 static int refuse_contour(struct nc_reader *r, const struct nc_cavity *c)
 {
 	return nc_refuse_at(r, c->line,
-			    "a lead in under G41 or G42, a contour that ends "
-			    "where it begins, and a lead out under G40",
+			    "one motion that leads in under G41 or G42, a "
+			    "contour that ends where it begins, and one "
+			    "motion that leads out under G40",
 			    "a contour P%g that is not whole", c->number);
 }
 

@@ -410,6 +410,11 @@ int nc_run_probe(struct nc_reader *r)
 
 	if (r->tool.on || nc_has_guides(r) || r->offset_side || r->taper_side)
 		return refuse_mode(r);
+	if (r->o->delivery && r->o->delivery->no_sense)
+		return nc_refuse(r, r->block.code_at[NC_PROBE],
+				 r->o->delivery->no_sense, "a motion that "
+				 "feels for the work, and no voltage to feel "
+				 "it by");
 	err = contour_flush(&r->contour, r->diag);
 	return err ? err : probes[r->block.code[NC_PROBE]->value](r);
 }

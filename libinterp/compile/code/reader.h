@@ -56,10 +56,7 @@ struct nc_tool_point {
 enum nc_told { NC_TOLD_POINT, NC_TOLD_INCHES, NC_TOLD_CONDITION,
 	       NC_TOLD_DWELL, NC_TOLD_OFFSET, NC_TOLD_ELECTRODE,
 	       NC_TOLD_CHANGE, NC_TOLD_SKIPPED, NC_TOLD_VACANT,
-	       NC_TOLD_PRINT };
-
-/* Why no more lines are read. */
-enum nc_over { NC_GOING, NC_TAPE_ENDED, NC_FINISHED };
+	       NC_TOLD_PRINT, NC_TOLD_COLUMNS };
 
 /* The words of one line.  Only members that `words` and `groups` name are
  * filled. */
@@ -122,13 +119,20 @@ struct nc_pattern {
 					 * letter of that slot */
 };
 
+/* A line of the text.  A line that macros have expanded is read in a buffer
+ * that the next line uses again: nothing that is kept points into a line. */
+struct nc_place {
+	size_t offset;			/* of its first byte in the text */
+	uint32_t line;			/* from 1; 0: there is none */
+};
+
 /* A program or subprogram that is being carried out. */
 struct nc_frame {
 	uint32_t number;		/* number of its O word; 0: none */
 	uint32_t left;			/* how often it is still to be
 					 * repeated */
-	uint32_t entry_line, return_line;
-	const uint8_t *entry, *back;	/* its first line; the caller's next
+	char name[40];			/* as a message calls it */
+	struct nc_place entry, back;	/* its first line; the caller's next
 					 * line */
 };
 
@@ -177,15 +181,18 @@ struct nc_defined {
 					 * it */
 	char letter;
 	uint32_t number;
+	bool empty;			/* nobody says what its columns mean,
+					 * and it is not in the table */
 	struct interp_tech tech;
 };
 
 #define NC_NDEFINED_MAX	256
 
-/* The place of an O word; line 0: there is none. */
+/* A line that begins a program, by an O word or a <NAME>. */
 struct nc_label {
-	const uint8_t *at;
-	uint32_t line, second;		/* second: the line where it is again */
+	struct nc_place place;
+	uint32_t second;		/* the line where its number is again */
+	uint32_t name;			/* how far in its line its < is */
 };
 
 /* A curve that is put together, block by block. */
@@ -216,7 +223,9 @@ struct nc_reader {
 	bool mapped;			/* the present line is in its buffer */
 
 	/* The text, and the present line. */
-	const uint8_t *text, *end;
+	const uint8_t *text, *text_end;
+	const uint8_t *end;		/* nothing behind it is read: the % that
+					 * ends the text */
 	const uint8_t *at;		/* the next line */
 	const uint8_t *line_at, *stop;	/* begin of this line, and its farthest
 					 * end */
@@ -275,9 +284,11 @@ struct nc_reader {
 	struct nc_frame frame[INTERP_NC_DEPTH_MAX + 1];
 	uint32_t depth;			/* frame in use; 0: the main program */
 	struct nc_label *labels;	/* by O number; NULL before an M98 */
+	struct nc_label *named;		/* by <NAME> */
+	size_t nnamed, named_room;
 	bool fresh;			/* this program has no words yet */
-	bool tape;			/* the first % was read */
-	enum nc_over over;
+	bool tape;			/* the % that begins it was read */
+	bool over;			/* the program has ended */
 
 	struct nc_curve curve;
 	uint32_t moved;			/* axes that the program has moved */
@@ -450,6 +461,11 @@ static inline bool nc_has_guides(const struct nc_reader *r)
 	return guides_on(&r->contour.guides);
 }
 
+/** nc_refuse_undelivered() - does all that @t gives reach the generator?
+ *  Return: 0, or it is refused: @who is named. */
+int nc_refuse_undelivered(struct nc_reader *r, const struct interp_tech *t,
+			  const char *who, const uint8_t *at);
+
 /** nc_call_condition() - call it from here on; the word is at @at. */
 int nc_call_condition(struct nc_reader *r, char letter, uint32_t number,
 		      const uint8_t *at);
@@ -475,6 +491,12 @@ int nc_cut(struct nc_reader *r);
  */
 int nc_call(struct nc_reader *r, double number, uint32_t times,
 	    const uint8_t *at);
+
+/** nc_call_name() - the same for the one with the <NAME> at @at. */
+int nc_call_name(struct nc_reader *r, uint32_t times, const uint8_t *at);
+
+/** nc_name_end() - behind the <NAME> at @at; NULL: it is none. */
+const uint8_t *nc_name_end(const uint8_t *at, const uint8_t *end);
 
 /** nc_read_line() - read the next line and carry it out. */
 int nc_read_line(struct nc_reader *r);
@@ -519,8 +541,10 @@ int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
  */
 void nc_target(const struct nc_reader *r, double ret_end_mm[INTERP_NAXES]);
 
-/** nc_word() - prepare r->word for a motion to @end_mm. */
-int nc_word(struct nc_reader *r, const double end_mm[INTERP_NAXES], bool rapid);
+/** nc_word() - prepare r->word for a motion.
+ *  @turns: only rotary axes move, so F is in degrees per minute, and inches do
+ *  not apply to it. */
+int nc_word(struct nc_reader *r, bool turns, bool rapid);
 
 /** nc_refuse_room() - there are too many segments. */
 int nc_refuse_room(struct nc_reader *r);
@@ -577,18 +601,46 @@ int nc_end_of_text(struct nc_reader *r);
 /** nc_skip_void() - the first byte from @p that is no blank and no comment. */
 const uint8_t *nc_skip_void(const uint8_t *p, const uint8_t *end);
 
-/**
- * nc_label_at() - does the line from @p to @end begin a program?  Return: its
- * number, or 0.
- */
-uint32_t nc_label_at(const struct nc_reader *r, const uint8_t *p,
-		     const uint8_t *end);
+/** nc_begins_program() - has the line from @p to @end an O word or a <NAME> in
+ *  front of all else? */
+bool nc_begins_program(const struct nc_reader *r, const uint8_t *p,
+		       const uint8_t *end);
+
+/** nc_tape_end() - the % that ends the text: the second one that begins a line,
+ *  or the first one behind words; @end: there is none.  Where words follow it,
+ *  the end of its line, so that they are refused. */
+const uint8_t *nc_tape_end(const uint8_t *text, const uint8_t *end);
+
+void nc_forget_labels(struct nc_reader *r);
 
 /** nc_column() - the column in the text of byte @at of the present line. */
 uint32_t nc_column(const struct nc_reader *r, const uint8_t *at);
 
+/** nc_is_computed() - does a macro's value begin at byte @at of the present
+ *  line? */
+bool nc_is_computed(const struct nc_reader *r, const uint8_t *at);
+
 /** nc_line_end() - the line break at or after @p, or @end. */
 const uint8_t *nc_line_end(const uint8_t *p, const uint8_t *end);
+
+/** nc_go() - the line at @to is the next one. */
+static inline void nc_go(struct nc_reader *r, struct nc_place to)
+{
+	r->at = r->text + to.offset;
+	r->line = to.line - 1;
+}
+
+/** nc_go_behind() - the line behind @to is the next one. */
+void nc_go_behind(struct nc_reader *r, struct nc_place to);
+
+/** nc_next() - the place of the next line. */
+static inline struct nc_place nc_next(const struct nc_reader *r)
+{
+	return (struct nc_place) { (size_t)(r->at - r->text), r->line + 1 };
+}
+
+/** nc_this() - the place of the present line. */
+struct nc_place nc_this(const struct nc_reader *r);
 
 /** nc_line_next() - behind the line break at @p. */
 static inline const uint8_t *nc_line_next(const uint8_t *p, const uint8_t *end)
@@ -631,6 +683,12 @@ void nc_note_vacant(struct nc_reader *r, uint32_t n);
 
 /** nc_note_print() - DPRNT and its like, the first of them @word. */
 void nc_note_print(struct nc_reader *r, const char *word);
+
+/** nc_note_columns() - nobody says what the columns of a definition mean. */
+void nc_note_columns(struct nc_reader *r, char letter, uint32_t number);
+
+/** nc_note_title() - words behind the first %. */
+void nc_note_title(struct nc_reader *r);
 
 /** nc_note_rest() - words behind the end, in line @line. */
 void nc_note_rest(struct nc_reader *r, uint32_t line);

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 static void fill(struct interp_diag *d, const char *wanted, const char *found,
 		 va_list ap)
@@ -16,8 +17,26 @@ static void fill(struct interp_diag *d, const char *wanted, const char *found,
 
 uint32_t nc_column(const struct nc_reader *r, const uint8_t *at)
 {
-	return r->mapped ? r->macro->column[at - r->line_at] :
+	return r->mapped ? r->macro->column[at - r->line_at] & ~MACRO_COMPUTED :
 			   (uint32_t)(at - r->line_at) + 1;
+}
+
+bool nc_is_computed(const struct nc_reader *r, const uint8_t *at)
+{
+	return r->mapped && r->macro->column[at - r->line_at] & MACRO_COMPUTED;
+}
+
+void nc_go_behind(struct nc_reader *r, struct nc_place to)
+{
+	nc_go(r, to);
+	r->at = nc_line_next(nc_line_end(r->at, r->end), r->end);
+	r->line++;
+}
+
+struct nc_place nc_this(const struct nc_reader *r)
+{
+	return r->mapped ? r->macro->place : (struct nc_place) {
+		(size_t)(r->line_at - r->text), r->line };
 }
 
 int nc_refuse(struct nc_reader *r, const uint8_t *at, const char *wanted,
@@ -70,9 +89,18 @@ static struct nc_quote quote(const struct nc_reader *r, const uint8_t *at,
 	return q;
 }
 
+static bool is_named(uint8_t c)
+{
+	return c >= ' ' && c < 0x7f && c != '>';
+}
+
 struct nc_quote nc_quote_word(const struct nc_reader *r, const uint8_t *at)
 {
-	return quote(r, at, is_number);
+	struct nc_quote q = quote(r, at, *at == '<' ? is_named : is_number);
+
+	if (*at == '<')
+		strncat(q.s, ">", sizeof(q.s) - strlen(q.s) - 1);
+	return q;
 }
 
 struct nc_quote nc_quote_run(const struct nc_reader *r, const uint8_t *at)

@@ -58,6 +58,13 @@ static bool has_point(const uint8_t *p, const uint8_t *end)
 	return p < end;
 }
 
+/* Behind M98 nothing is a length, and L is how often on other controls. */
+static bool is_call(const struct nc_block *b)
+{
+	return b->groups & NC_BIT(NC_STOP) &&
+	       b->code[NC_STOP]->value == NC_CALL;
+}
+
 /* A length without a decimal point.  0 is 0 everywhere.  Other values are taken
  * as they are, or in the last of their decimals (0.001 mm, 0.0001 inches), or
  * are refused; where they are refused, angles are, too. */
@@ -72,7 +79,7 @@ static bool pointed_length(struct nc_reader *r, const uint8_t *at,
 		*v /= nc_pow10[r->unit_mm > 1 ? 4 : 3];
 	if (r->d->point == NC_POINT_LAST && !r->block.unit_at)
 		r->block.unit_at = at;
-	if (r->d->point != NC_POINT_WANTED)
+	if (r->d->point != NC_POINT_WANTED || is_call(&r->block))
 		return true;
 	nc_refuse(r, at, "a decimal point, as in X10.0: without one some "
 		  "controls read thousandths", "%s without a decimal point",
@@ -499,16 +506,44 @@ static const uint8_t *scan_slash(struct nc_reader *r, const uint8_t *at)
 	return NULL;
 }
 
+/* The first % begins the text; what stands behind it is the title of a tape.
+ * The one that ends the text ended it for all of the reader: nc_tape_end(). */
 static const uint8_t *scan_percent(struct nc_reader *r, const uint8_t *at)
 {
+	const uint8_t *p = nc_skip_void(at + 1, nc_line_end(at, r->stop));
+
 	if (r->block.words || r->block.groups) {
 		nc_refuse(r, at, "% alone on its line",
 			  "%% behind other words");
 		return NULL;
 	}
-	r->block.groups |= NC_BIT(NC_TAPE);
-	r->block.code_at[NC_TAPE] = at;
-	return at + 1;
+	if (r->tape || !r->fresh) {
+		nc_refuse(r, at, "% alone on its line", "words behind %%");
+		return NULL;
+	}
+	r->tape = true;
+	if (p < r->stop && nc_classes[*p] != NC_EOL && *p != ';')
+		nc_note_title(r);
+	return scan_to_end(r, p);
+}
+
+/* <PART>: the name of a program. */
+static const uint8_t *scan_name(struct nc_reader *r, const uint8_t *at)
+{
+	struct nc_block *b = &r->block;
+	const uint8_t *p = nc_name_end(at, r->stop);
+
+	if (b->words & NC_BIT(NC_NAME))
+		return refuse_twice(r, at);
+	if (!p) {
+		nc_refuse(r, at, "<NAME>, of letters, digits and + - _ .",
+			  "a program's name without an end");
+		return NULL;
+	}
+	b->words |= NC_BIT(NC_NAME);
+	b->at[NC_NAME] = at;
+	r->word_at = at;
+	return p;
 }
 
 static const uint8_t *scan_blank(struct nc_reader *r, const uint8_t *at)
@@ -551,6 +586,7 @@ static scan_fn *const scan_other[NC_NCLASSES] = {
 	[NC_SLASH]	= scan_slash,
 	[NC_PERCENT]	= scan_percent,
 	[NC_COLON]	= scan_colon,
+	[NC_LETTER_NAME] = scan_name,
 	[NC_LETTER_REFUSED] = scan_refused,
 	[NC_LETTER_REST] = scan_rest,
 };
@@ -586,6 +622,11 @@ static void add_groups(struct nc_block *b)
 		b->groups |= NC_BIT(NC_FEED);
 	if (b->words & NC_BIT(NC_O))
 		b->groups |= NC_BIT(NC_LABEL);
+	/* Beside M98 it is the one that is called. */
+	if (b->words & NC_BIT(NC_NAME) && !(b->groups & NC_BIT(NC_STOP))) {
+		b->groups |= NC_BIT(NC_LABEL);
+		b->takes |= NC_BIT(NC_NAME);
+	}
 	if (b->words & NC_OFFSETS)
 		b->groups |= NC_BIT(NC_REGISTER);
 }
@@ -600,6 +641,7 @@ static int refuse_long(struct nc_reader *r, const uint8_t *at)
 static int begin_line(struct nc_reader *r)
 {
 	const uint8_t *p = r->at, *end;
+	struct nc_place place;
 	int err;
 
 	nc_begin_line(r);
@@ -609,12 +651,14 @@ static int begin_line(struct nc_reader *r)
 	if (end < r->end && nc_classes[*end] != NC_EOL)
 		return refuse_long(r, end);
 	r->at = nc_line_next(end, r->end);
+	place = nc_this(r);
 	err = nc_macro_line(r, p, end);
 	if (err <= 0) {
 		r->at = p;
 		return err;
 	}
 	nc_count_bytes(r, (size_t)(end - p), NC_COUNTED_MACRO);
+	r->macro->place = place;
 	r->mapped = true;
 	r->line_at = r->macro->text;
 	r->stop = r->line_at + r->macro->used;
@@ -650,7 +694,8 @@ int nc_scan_line(struct nc_reader *r)
 	b->toward &= ~b->drops;
 	if (!r->mapped && p < r->end && nc_classes[*p] != NC_EOL)
 		return refuse_long(r, p);
-	if (b->words & (NC_BIT(NC_F) | NC_BIT(NC_O) | NC_OFFSETS))
+	if (b->words & (NC_BIT(NC_F) | NC_BIT(NC_O) | NC_BIT(NC_NAME) |
+			NC_OFFSETS))
 		add_groups(b);
 	if (r->mapped)
 		return 0;

@@ -37,12 +37,28 @@ static int refuse_unknown(struct nc_reader *r, char letter, uint32_t number,
 						   sizeof(name)));
 }
 
+/* It would cut with the values of another condition. */
+static int refuse_empty(struct nc_reader *r, const struct nc_defined *d,
+			const uint8_t *at)
+{
+	char name[16], wanted[160];
+
+	interp_tech_name(d->letter, d->number, name, sizeof(name));
+	snprintf(wanted, sizeof(wanted), "a technology table with a line "
+		 "inline %c, which says what each of them means, or with a row "
+		 "%s", d->letter, name);
+	return nc_refuse(r, at, wanted, "%s, which the program defines by "
+			 "numbers that mean nothing here", name);
+}
+
 int nc_call_condition(struct nc_reader *r, char letter, uint32_t number,
 		      const uint8_t *at)
 {
 	const struct nc_defined *d = defined_of(r, letter, number);
 	const struct interp_tech_row *row = NULL;
 
+	if (d && d->empty)
+		return refuse_empty(r, d, at);
 	if (!d && r->o->tech) {
 		row = interp_tech_row(r->o->tech, letter, number);
 		if (!row)
@@ -56,6 +72,11 @@ int nc_call_condition(struct nc_reader *r, char letter, uint32_t number,
 
 /* -- Defined -------------------------------------------------------------- */
 
+static bool has_columns(const struct nc_reader *r, char letter)
+{
+	return r->o->tech && interp_tech_inline(r->o->tech, letter)->ncolumns;
+}
+
 /* Begin with what the table has of it; the definition replaces values of
  * that. */
 static void begin_definition(const struct nc_reader *r, struct nc_defined *d)
@@ -64,6 +85,7 @@ static void begin_definition(const struct nc_reader *r, struct nc_defined *d)
 		interp_tech_row(r->o->tech, d->letter, d->number) : NULL;
 
 	interp_tech_clear(&d->tech);
+	d->empty = !row && !has_columns(r, d->letter);
 	if (row)
 		d->tech = row->tech;
 }
@@ -91,6 +113,17 @@ static int take_column(struct nc_reader *r, struct nc_defined *d,
 			 column + 1, interp_tech_field[id].name, value);
 }
 
+int nc_refuse_undelivered(struct nc_reader *r, const struct interp_tech *t,
+			  const char *who, const uint8_t *at)
+{
+	const struct interp_delivery *d = r->o->delivery;
+	struct interp_diag why;
+
+	if (!d || d->takes(d->arg, t, who, &why) == 0)
+		return 0;
+	return nc_refuse(r, at, why.wanted, "%s", why.found);
+}
+
 static int check_definition(struct nc_reader *r, const struct nc_defined *d,
 			    uint32_t columns, const uint8_t *at)
 {
@@ -115,7 +148,9 @@ static int check_definition(struct nc_reader *r, const struct nc_defined *d,
 			     interp_tech_name(d->letter, d->number, name,
 					      sizeof(name)), &why))
 		return nc_refuse(r, at, why.wanted, "%s", why.found);
-	return 0;
+	return nc_refuse_undelivered(r, &d->tech,
+				     interp_tech_name(d->letter, d->number,
+						      name, sizeof(name)), at);
 }
 
 /* Conditions that were called before keep the values with which they were
@@ -159,6 +194,8 @@ const uint8_t *nc_define_condition(struct nc_reader *r, const uint8_t *at,
 	}
 	if (check_definition(r, &d, n, at) || keep_definition(r, &d, at))
 		return NULL;
+	if (!has_columns(r, d.letter))
+		nc_note_columns(r, d.letter, d.number);
 	r->word_at = at;
 	return p;
 }

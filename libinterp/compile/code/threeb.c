@@ -140,52 +140,18 @@ static int scale_of(struct threeb_reader *r, const struct threeb_record *c,
 	return 0;
 }
 
-/*
- * Start and end are whole units, so their radii may differ by a unit.  Where a
- * pulse is as coarse as that, the builder accepts it.  Where pulses are finer,
- * the centre is moved along the chord until both radii are equal.  If that
- * would move it far, as on a circle that is almost closed, the end is moved
- * onto the circle instead.
- */
-static void even_radii(const struct threeb_reader *r,
-		       struct interp_build_arc *arc, bool far,
-		       double end_mm[INTERP_NAXES])
-{
-	const double *here = interp_build_here(r->build);
-	const double x0 = here[INTERP_X] - arc->centre_a_mm;
-	const double y0 = here[INTERP_Y] - arc->centre_b_mm;
-	const double x1 = end_mm[INTERP_X] - arc->centre_a_mm;
-	const double y1 = end_mm[INTERP_Y] - arc->centre_b_mm;
-	const double r0 = hypot(x0, y0), r1 = hypot(x1, y1);
-	const double chord = hypot(x1 - x0, y1 - y0);
-	const double shift = (r1 - r0) * (r1 + r0) / (2 * chord);
-	const struct interp_axis_limits *l = r->o->machine->axis;
-
-	if (fabs(r1 - r0) <= fmin(l[INTERP_X].pulse_mm, l[INTERP_Y].pulse_mm))
-		return;
-	if (!far || fabs(shift) <= r->unit_mm) {
-		arc->centre_a_mm += shift * (x1 - x0) / chord;
-		arc->centre_b_mm += shift * (y1 - y0) / chord;
-	} else {
-		end_mm[INTERP_X] = arc->centre_a_mm + x1 * r0 / r1;
-		end_mm[INTERP_Y] = arc->centre_b_mm + y1 * r0 / r1;
-	}
-}
-
 static int build_arc(struct threeb_reader *r, const struct threeb_record *c,
 		     const struct threeb_arc *a, const struct threeb_end *e,
 		     double scale)
 {
 	const double cx = r->x - scale * (double)a->x;
 	const double cy = r->y - scale * (double)a->y;
-	struct interp_build_arc arc = {
+	const struct interp_build_arc arc = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = r->start_mm[INTERP_X] + cx * r->unit_mm,
 		.centre_b_mm = r->start_mm[INTERP_Y] + cy * r->unit_mm,
 		.clockwise = a->clockwise,
 	};
-	const double turn = (double)a->x * (double)e->y -
-			    (double)a->y * (double)e->x;
 	double end_mm[INTERP_NAXES];
 	int rc;
 
@@ -194,8 +160,6 @@ static int build_arc(struct threeb_reader *r, const struct threeb_record *c,
 		r->y = cy + scale * (double)e->y;
 	}
 	place_mm(r, r->x, r->y, end_mm);
-	if (!e->full)
-		even_radii(r, &arc, (turn < 0) != a->clockwise, end_mm);
 	rc = interp_build_arc(r->build, end_mm, &arc, &r->word, r->text.diag);
 	return placed(r, c, rc);
 }

@@ -286,10 +286,9 @@ static int body_build(struct nc_reader *r)
 	};
 	struct curve_plan plan = { .c = &bc, .diag = r->diag };
 	struct pair p = { .k = &r->tool.k };
-	int err = nc_word(r, c->last_mm, false);
+	int err = nc_word(r, false, false);
 
 	c->open = 0;
-	r->word.feed_mm_s = r->feed_mm_s;
 	nc_curve_set_marks(c);
 	if (!err)
 		err = pair_make(&p, c) ? check(r, &plan, &p) : -ENOMEM;

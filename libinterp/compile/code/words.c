@@ -42,6 +42,8 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 	[NC_UJ] = { 'J', false, ANY_PLACE, "J " CENTRE_LINES },
 	[NC_Q] = { 'Q', false, ANY_PLACE,
 		   "Q goes with G130 ... G135, G160 ... G162, G5 or G6.3" },
+	[NC_NAME] = { '<', false, ANY_PLACE,
+		      "<NAME> begins a line, or goes with M98 and G65" },
 	[NC_SPARE] = { '?', false, ANY_PLACE, "only with a word that this "
 		       "dialect ignores" },
 };

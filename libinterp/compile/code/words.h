@@ -25,6 +25,8 @@ enum nc_slot {
 	NC_D, NC_H, NC_ANGLE,		/* offset registers; A of a taper */
 	NC_UI, NC_UJ,			/* I J behind a : */
 	NC_Q,
+	NC_NAME,			/* <NAME> of a program; only its place
+					 * counts */
 	NC_SPARE,			/* a letter that only ignored words
 					 * use */
 	NC_NSLOTS
@@ -77,6 +79,7 @@ enum nc_class {
 	NC_SLASH,
 	NC_PERCENT,
 	NC_COLON,
+	NC_LETTER_NAME,			/* <NAME> of a program */
 	NC_LETTER_REFUSED,		/* known in other dialects: there is a
 					 * reason */
 	NC_LETTER_REST,			/* the rest of the line is ignored */
@@ -91,8 +94,7 @@ extern const uint8_t nc_classes[256];
  * order, whatever the order of its words. */
 enum nc_group {
 	NC_UNKNOWN,
-	NC_TAPE,			/* % */
-	NC_LABEL,			/* O */
+	NC_LABEL,			/* O, <NAME> */
 	NC_UNITS,			/* G20 G21 */
 	NC_PLANE,			/* G17 G18 G19 */
 	NC_DISTANCE,			/* G90 G91 */

@@ -15,13 +15,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The radii at start and end may differ by a rounding of the last digit, or by
- * this. */
-#define RADIUS_PULSES	2.0
-#define RADIUS_SHARE	0.001
-#define RADIUS_MOST	5.0
-/* They may not differ by more than this share of the smaller one. */
-#define RADIUS_SPIRAL	0.5
+/* Radii that differ by less are walked as they are: a spiral within so many
+ * pulses stays between its circles.  More would leave what a walk looks at. */
+#define SPIRAL_PULSES	2.0
+#define SPIRAL_OF_R	0.001
+#define SPIRAL_MOST	5.0
+
+/* If an arc of more than half a turn has a shorter chord, in radii, or a centre
+ * that moves farther, its far side would move with it. */
+#define NEARLY_CLOSED	0.5
+#define CENTRE_SHARE	0.25
+
+/* What differs by so much of the smaller radius is no circle any more. */
+#define SPIRAL_SHARE	0.5
+
+/* A line that is so near to an arc may stand for it. */
+#define STRAIGHT_PULSES	2.0
 
 /* If the angles of both ends differ by less than this part of a pulse, they are
  * equal. */
@@ -29,21 +38,12 @@
 
 /* A lattice point of an arc is no farther beside it, beside the tolerance: the
  * radii may differ, and so may a centre and the nearest lattice point. */
-#define BESIDE_PULSES	(RADIUS_MOST + 5)
+#define BESIDE_PULSES	(SPIRAL_MOST + 5)
 
 static const struct interp_axis_limits *limits(const struct build_arc *p,
 					       uint32_t a)
 {
 	return &p->o->machine->axis[a];
-}
-
-static int refuse_radius(double r0, double r1, struct interp_diag *diag)
-{
-	return interp_diag_say(diag, "the arc starts %.4f mm from its centre "
-			       "and ends %.4f mm from it; radii that agree "
-			       "within %g pulses, or %g %% but %g pulses", r0,
-			       r1, RADIUS_PULSES, RADIUS_SHARE * 100,
-			       RADIUS_MOST);
 }
 
 /* The angle from theta0 on to theta1 in the direction of the arc; whole turns
@@ -77,11 +77,7 @@ int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
 	const double r0 = hypot(a0, b0), r1 = hypot(a1, b1);
 	const double pulse = larger(limits(p, w->axis_a)->pulse_mm,
 				    limits(p, w->axis_b)->pulse_mm);
-	const double share = smaller(RADIUS_SHARE * smaller(r0, r1),
-				     RADIUS_MOST * pulse);
 
-	if (!(fabs(r1 - r0) <= larger(RADIUS_PULSES * pulse, share)))
-		return refuse_radius(r0, r1, diag);
 	if (r0 < pulse / 2) {
 		return interp_diag_say(diag, "an arc of radius %.6f mm; a "
 				       "radius of half a pulse or more", r0);
@@ -376,28 +372,64 @@ static double chord_off_mm(const struct interp_arc *arc)
 	return r * (1 - cos(half));
 }
 
-/*
- * On an arc of few pulses, a rounding can make the circle a spiral into its
- * centre, or a way outward with hardly a turn.  No speed around such a spiral
- * is possible.  If a line is as near to it as the radii may differ, it becomes
- * a line; otherwise it is refused.
- */
-static int settle_spiral(struct build_arc *p, struct interp_diag *diag)
+static double pulse_of(const struct build_arc *p)
+{
+	return larger(limits(p, p->arc.axis_a)->pulse_mm,
+		      limits(p, p->arc.axis_b)->pulse_mm);
+}
+
+/* A spiral into its centre, or a way outward with hardly a turn: no speed
+ * around it is possible. */
+static bool is_steep(const struct interp_arc *arc)
+{
+	const double least = smaller(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double off = fabs(arc->dr_mm);
+
+	return off > SPIRAL_SHARE * least || off > fabs(arc->sweep) * least;
+}
+
+/* Is a line as near to it as its radii are to each other? */
+static bool is_straight(const struct build_arc *p)
+{
+	const double near = larger(STRAIGHT_PULSES * pulse_of(p),
+				   fabs(p->arc.dr_mm) / 4);
+
+	return is_steep(&p->arc) && chord_off_mm(&p->arc) <= near;
+}
+
+static bool is_even(const struct build_arc *p)
+{
+	const double least = smaller(p->arc.r_mm, p->arc.r_mm + p->arc.dr_mm);
+	const double pulse = pulse_of(p);
+
+	return fabs(p->arc.dr_mm) <=
+	       larger(SPIRAL_PULSES * pulse,
+		      smaller(SPIRAL_OF_R * least, SPIRAL_MOST * pulse));
+}
+
+enum build_arc_ends build_arc_even(struct build_arc *p,
+				   struct interp_build_arc *word)
 {
 	const struct interp_arc *arc = &p->arc;
-	const double pulse = larger(limits(p, arc->axis_a)->pulse_mm,
-				    limits(p, arc->axis_b)->pulse_mm);
-	const double r0 = arc->r_mm, r1 = arc->r_mm + arc->dr_mm;
-	const double least = smaller(r0, r1), off = fabs(arc->dr_mm);
+	const double a = p->to_mm[arc->axis_a] - p->from_mm[arc->axis_a];
+	const double b = p->to_mm[arc->axis_b] - p->from_mm[arc->axis_b];
+	const double theta = arc->theta + arc->sweep / 2;
+	const double r = arc->r_mm + arc->dr_mm / 2;
+	double chord, by;
 
-	if (off <= RADIUS_SPIRAL * least && off <= fabs(arc->sweep) * least)
-		return 0;
-	p->straight = chord_off_mm(arc) <= RADIUS_PULSES * pulse;
-	if (p->straight)
-		return 0;
-	return interp_diag_say(diag, "a spiral from %.4f mm to %.4f mm from "
-				     "its centre; radii that differ by half "
-				     "of the smaller at most", r0, r1);
+	if (p->word->turns || is_even(p) || is_straight(p))
+		return BUILD_ARC_AS_IT_IS;
+	chord = hypot(a, b);
+	by = arc->dr_mm * r / chord;
+	p->mid_mm[0] = arc->a_mm + r * cos(theta);
+	p->mid_mm[1] = arc->b_mm + r * sin(theta);
+	if (fabs(arc->sweep) > ANGLE_TURN / 2 && fabs(by) > pulse_of(p) &&
+	    (chord < NEARLY_CLOSED * r || fabs(by) > CENTRE_SHARE * r))
+		return BUILD_ARC_HALVES;
+	*word = *p->word;
+	word->centre_a_mm += by * a / chord;
+	word->centre_b_mm += by * b / chord;
+	return BUILD_ARC_MOVED;
 }
 
 /* The cycle refuses to walk round what it cannot count in pulses. */
@@ -417,16 +449,13 @@ static int settle_far(const struct build_arc *p, struct interp_diag *diag)
 
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 {
-	int err = build_arc_shape(p, diag);
+	int err = arc_travel(p, diag);
 
 	if (err < 0)
 		return err;
-	err = arc_travel(p, diag);
-	if (err < 0)
-		return err;
-	err = settle_spiral(p, diag);
-	if (err < 0 || p->straight)
-		return err;
+	p->straight = is_steep(&p->arc);
+	if (p->straight)
+		return 0;
 	err = settle_far(p, diag);
 	if (err < 0)
 		return err;

@@ -24,6 +24,7 @@ struct build_arc {
 	bool straight;		/* too short to be an arc: make it a line */
 	bool near_edge;		/* of the travel: ask build_edge_look() */
 	struct interp_arc arc;
+	double mid_mm[2];	/* between its halves */
 	uint32_t ticks;
 	double length_mm, feed_max_mm_s;
 	struct circle_plan runs;	/* if arc.nruns > 0 */
@@ -34,11 +35,29 @@ struct build_arc {
  * word and ends.
  *
  * Of o only the machine is used.  Return: 0, or -EINVAL with @diag's found and
- * wanted if the radii differ or are 0.
+ * wanted if the radius is 0.
  */
 int build_arc_shape(struct build_arc *p, struct interp_diag *diag);
 
-/** build_arc_plan() - 0, or -EINVAL with @diag's found and wanted. */
+enum build_arc_ends {
+	BUILD_ARC_AS_IT_IS,		/* on one already, or a line */
+	BUILD_ARC_MOVED,		/* round another centre */
+	BUILD_ARC_HALVES,
+};
+
+/**
+ * build_arc_even() - the ends of the shape @p are rounded, and lie on two
+ * circles round a centre that is rounded, too.  How do they come onto one?
+ *
+ * The centre moves along the chord, into @word.  On an arc that nearly comes
+ * back to its start it would move by far more than a rounding: such an arc
+ * becomes two, with the place p->mid_mm between them, whose chords are long.
+ */
+enum build_arc_ends build_arc_even(struct build_arc *p,
+				   struct interp_build_arc *word);
+
+/** build_arc_plan() - of a shape.  0, or -EINVAL with @diag's found and
+ *  wanted. */
 int build_arc_plan(struct build_arc *p, struct interp_diag *diag);
 
 /** build_arc_kept() - numbers that the program keeps of a planned arc: its runs

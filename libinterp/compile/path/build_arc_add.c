@@ -59,6 +59,24 @@ static int walk(struct interp_build *b, const struct build_arc *p,
 	       build_walk(b, BUILD_EDGE_POINTS, diag) : err;
 }
 
+/* The other axes go half of their way. */
+static int add_halves(struct interp_build *b, const double end_mm[INTERP_NAXES],
+		      const struct build_arc *p,
+		      const struct interp_build_word *w,
+		      struct interp_diag *diag)
+{
+	const struct interp_build_arc *a = p->word;
+	double half_mm[INTERP_NAXES];
+	int err;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		half_mm[i] = (interp_build_here(b)[i] + end_mm[i]) / 2;
+	half_mm[a->axis_a] = p->mid_mm[0];
+	half_mm[a->axis_b] = p->mid_mm[1];
+	err = interp_build_arc(b, half_mm, a, w, diag);
+	return err ? err : interp_build_arc(b, end_mm, a, w, diag);
+}
+
 int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_arc *a,
 		     const struct interp_build_word *w,
@@ -69,6 +87,7 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 				  .loose = b->loose, .end_mm = end_mm,
 				  .to_sub = to };
 	const uint32_t plane = 1u << a->axis_a | 1u << a->axis_b;
+	struct interp_build_arc moved;
 	struct build_measure m;
 	int err = build_measure_next(b, end_mm, to, &m, diag);
 
@@ -81,7 +100,20 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	if (!pulse_strategy(b->o.strategy)->at_once)
 		plan.way = build_way_to(b, to, &m);
 	plan.way.except = plane;
-	err = build_arc_plan(&plan, diag);
+	err = build_arc_shape(&plan, diag);
+	if (err < 0)
+		return err;
+	switch (build_arc_even(&plan, &moved)) {
+	case BUILD_ARC_HALVES:
+		return add_halves(b, end_mm, &plan, w, diag);
+	case BUILD_ARC_MOVED:
+		plan.word = &moved;
+		err = build_arc_shape(&plan, diag);
+		break;
+	case BUILD_ARC_AS_IT_IS:
+		break;
+	}
+	err = err < 0 ? err : build_arc_plan(&plan, diag);
 	if (err < 0)
 		return err;
 	if (plan.straight)

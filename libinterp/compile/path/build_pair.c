@@ -109,7 +109,9 @@ static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 		plan->way.to[a] = p->to[a];
 		plan->way.except |= 1u << a;
 	}
-	err = build_arc_plan(plan, diag);
+	err = build_arc_shape(plan, diag);
+	if (err == 0)
+		err = build_arc_plan(plan, diag);
 	plan->word = NULL;
 	plan->o = NULL;
 	return err;

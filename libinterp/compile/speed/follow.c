@@ -3,7 +3,7 @@
 #include "speed/follow.h"
 #include "speed/pass.h"
 
-#include "both.h"
+#include "thread.h"
 
 #include <pthread.h>
 #include <stdlib.h>
@@ -102,7 +102,8 @@ struct follow *follow_begin(const struct interp_limits *l,
 	pthread_mutex_init(&f->lock, NULL);
 	pthread_cond_init(&f->more, NULL);
 	pthread_cond_init(&f->stands, NULL);
-	if (both_start(&f->thread, follow, f) == 0)
+	if (thread_start(&f->thread, &(struct thread) {
+			.name = "edm-follow", .run = follow, .arg = f }) == 0)
 		return f;
 	f->joined = true;
 	follow_stop(f);

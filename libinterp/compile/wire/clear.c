@@ -206,9 +206,9 @@ static double wanted_of(const struct track_work *w, const struct track_elem *e,
 }
 
 /*
- * A lead touches the outline where it ends.  That is no fault of an open one,
- * nor of a lead that is programmed to come through the outline from its other
- * side.
+ * A lead touches the outline where it ends: one piece of it, or both if the
+ * outline is written closed.  That is no fault of an open one, nor of a lead
+ * that is programmed to come through the outline from its other side.
  */
 static bool is_own_end(const struct track_work *w, const struct track_elem *e,
 		       uint32_t id)
@@ -217,7 +217,8 @@ static bool is_own_end(const struct track_work *w, const struct track_elem *e,
 
 	const int lead = track_lead_of(w, (uint32_t)(e - w->elem));
 
-	return (id == 0 || id == f->n - 1) &&
+	return (id == (lead ? f->n - 1 : 0) ||
+		(f->written_closed && (id == 0 || id == f->n - 1))) &&
 	       (!f->closed || w->job->lead[lead].through);
 }
 

@@ -293,22 +293,6 @@ int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 	return err;
 }
 
-/* Start and end at one distance from the centre, as the builder wants it. */
-static int check_radius(const struct contour *k, const struct curve *c,
-			struct interp_diag *diag)
-{
-	const double r1 = curve_distance(c->centre, c->to);
-
-	if (fabs(r1 - c->r) <= fmax(2 * k->guides.pulse_mm,
-				    fmin(0.001 * c->r,
-					 5 * k->guides.pulse_mm)))
-		return 0;
-	return interp_diag_say(diag, "the arc starts %.4f mm from its centre "
-			       "and ends %.4f mm from it; radii that agree "
-			       "within 2 pulses, or 0.1 %% but 5 pulses", c->r,
-			       r1);
-}
-
 /* The wire keeps its lean: the top goes round as the bottom does. */
 static int take_arc(struct contour *k, struct contour_motion *m,
 		    const struct interp_build_arc *arc,
@@ -321,10 +305,6 @@ static int take_arc(struct contour *k, struct contour_motion *m,
 	m->c[0] = curve_arc(m->c[0].from, m->c[0].to, centre, arc->clockwise);
 	m->c[1] = curve_arc(m->c[1].from, m->c[1].to, vec_add(centre, 1, lean),
 			    arc->clockwise);
-	if (check_radius(k, &m->c[0], diag) < 0) {
-		diag->line = m->word.line;
-		return -EINVAL;
-	}
 	return take_or_stay(k, m, diag);
 }
 
@@ -362,10 +342,6 @@ int contour_two(struct contour *k, const double end_mm[INTERP_NAXES],
 		if (c[p].arc)
 			m.c[p] = curve_arc(m.c[p].from, m.c[p].to, centre,
 					   c[p].clockwise);
-		if (c[p].arc && check_radius(k, &m.c[p], diag) < 0) {
-			diag->line = w->line;
-			return -EINVAL;
-		}
 	}
 	return take_or_stay(k, &m, diag);
 }

@@ -231,6 +231,7 @@ int face_make(struct face *f, const struct face_from *from,
 	      struct face_fault *fault)
 {
 	struct face still = { .n = 0 };
+	bool closed = false;
 	double way = 0;
 	int err = take_all(f, from);
 
@@ -238,6 +239,7 @@ int face_make(struct face *f, const struct face_from *from,
 		still = *f;
 		*f = (struct face) { .n = 0 };
 		find_closure(&still, from->pulse_mm);
+		closed = still.closed;
 		err = face_move(f, from, &still, fault);
 		face_free(&still);
 	}
@@ -247,5 +249,6 @@ int face_make(struct face *f, const struct face_from *from,
 	}
 	if (!err)
 		find_closure(f, from->pulse_mm);
+	f->written_closed = closed || f->closed;
 	return err;
 }

@@ -48,6 +48,8 @@ struct face {
 	size_t room;
 	uint32_t n;
 	bool closed;			/* it ends where it begins */
+	bool written_closed;		/* so it does as it is written, before
+					 * it is moved */
 	uint32_t nconstant;		/* fillets that would turn inside out
 					 * and keep their radius instead */
 	uint32_t first_constant;	/* owner of the first of them */

@@ -22,6 +22,8 @@
  */
 #include "wire/track.h"
 
+#include "interp/angle.h"
+
 #include <math.h>
 
 /* What rounding to a micrometre may hide of the outline. */
@@ -44,17 +46,24 @@ const struct face_piece *track_piece(const struct track_work *w, uint32_t e)
 }
 
 /* Share of its piece at which element @e touches the outline, from the wire at
- * @at; 1 if it goes round the corner behind it.  A lead touches the outline
- * where it ends. */
-static double touch_of(const struct track_work *w, uint32_t e, struct vec at)
+ * @at, its own share @t; 1 if it goes round the corner behind it.  A lead
+ * touches the outline where it ends.  The begin and the end of a circle are one
+ * place: @t tells which it is. */
+static double touch_of(const struct track_work *w, uint32_t e, double t,
+		       struct vec at)
 {
 	const struct face_piece *p = track_piece(w, e);
+	double share, turn;
 
 	if (w->elem[e].piece < 0)
 		return track_lead_of(w, e);
 	if (w->elem[e].round || curve_length(&p->c) < CURVE_SAME_MM)
 		return 1;
-	return fmin(fmax(curve_share(&p->c, at), 0), 1);
+	share = curve_share(&p->c, at);
+	turn = p->c.arc ? ANGLE_TURN / fabs(p->c.sweep) : INFINITY;
+	if (isfinite(turn))
+		share += turn * round((t - share) / turn);
+	return fmin(fmax(share, 0), 1);
 }
 
 /* By how much piece @p's parallel is to its left. */
@@ -158,8 +167,8 @@ static void between_init(struct between *k, const struct track_work *w,
 		.first = (uint32_t)first,
 		.n = (uint32_t)(last - first + (last < first ? f->n : 0)) + 1,
 	};
-	k->t[0] = touch_of(w, j->e, k->at);
-	k->t[1] = touch_of(w, j->f, k->at);
+	k->t[0] = touch_of(w, j->e, j->te, k->at);
+	k->t[1] = touch_of(w, j->f, j->tf, k->at);
 	k->d = fmax(fabs(shift_of(w, track_piece(w, j->e))),
 		    fabs(shift_of(w, track_piece(w, j->f))));
 }
@@ -337,12 +346,10 @@ static bool is_plain(const struct between *k)
 
 bool lost_is(const struct track_work *w, const struct track_jump *j)
 {
-	/* But from a lead, the beginning of its piece may be missing. */
-	const bool is_same = w->elem[j->e].piece == w->elem[j->f].piece;
 	struct between k;
 
 	between_init(&k, w, j);
-	return !is_same && !is_plain(&k) && is_any_missing(&k);
+	return !is_plain(&k) && is_any_missing(&k);
 }
 
 double lost_point(const struct track_work *w, const struct track_jump *j)

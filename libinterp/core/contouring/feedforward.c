@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const char *const names[] = {
-	"feedforward", "cross-coupled", "predictive", "zpetc", "twin",
+	"feedforward", "cross-coupled", "predictive", "zpetc",
 };
 
 #define NMETHODS	((int)(sizeof(names) / sizeof(names[0])))

@@ -14,10 +14,10 @@ trace_start gpio==$(($(base sim0) + 9))
 ./edmctl doctor --pulses gpiochip0:9 > pulses 2>&1
 echo $? > pulses.rc
 trace_end sim0 pulses.trace
-gpioset --mode=signal --background gpiochip0 6=1
+hold_line gpiochip0 6
 for line in gpiochip0:6 gpiochip0:32 gpiochip9:1 nine; do
 	echo "$line:"; ./edmctl doctor --pulses $line; echo "rc $?"
 done > pulses.refused 2>&1
-kill $(pidof gpioset)
+release_line
 chmod a+r *; cp pulses pulses.refused *.trace *.job *.rc *.log *.edmd-rc *.status $J/
 true

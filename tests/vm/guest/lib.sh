@@ -18,6 +18,16 @@ ldd $R/edmd $R/edmd2 $R/edmd-jobs $R/edmctl /bin/grep |
 	/bin/sh /bin/cat /bin/sleep /bin/grep /bin/rm /bin/mkdir /bin/sed > /dev/null
 [ -e $T/trace ] || mount -t tracefs tracefs $T
 
+# hold_line CHIP LINE - another program has it, until release_line
+hold_line() {
+	case $(gpioset --version) in
+	*v1.*)	gpioset --mode=signal --background $1 $2=1 ;;
+	*)	gpioset --daemonize --chip $1 $2=1 ;;
+	esac
+}
+
+release_line() { kill $(pidof gpioset); }
+
 # pull CHIP LINE up|down - what a switch does to an input
 pull() { echo pull-$3 > $(chip_dir $1)/sim_gpio$2/pull; }
 

@@ -30,9 +30,9 @@ refused() {	# NAME [USER]
 }
 refused no-chip
 refused no-line
-gpioset --mode=signal --background gpiochip0 6=1
+hold_line gpiochip0 6
 refused busy
-kill $(pidof gpioset)
+release_line
 refused rights nobody
 
 # How fast a line goes, as somebody with a new board asks.

@@ -37,6 +37,7 @@ pull sim0 20 up
 (cd /dev/shm/edmd && stat -c '%n %A %U %G' . *) > shared 2>&1
 (cd /dev/shm/edmd-jobs && stat -c '%n %A %U %G' . *) > shared-jobs 2>&1
 (cd /run/edmd-jobs && stat -c '%n %A %U %G' . *) > sockets-jobs 2>&1
+(cd /run/edmd && stat -c '%n %A %U %G' . *) > sockets 2>&1
 setpriv --reuid=nobody --regid=nogroup --clear-groups \
 	ls /dev/shm/edmd > shared-nobody 2>&1
 

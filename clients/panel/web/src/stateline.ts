@@ -29,7 +29,6 @@ export function hasWarning(): boolean {
 }
 
 function idle(): string {
-	if (!link.state.jobs) return t("why.nojobs");
 	if (unhomed()) return t("why.idle.unhomed", { axes: unhomed() });
 	return t(link.state.queue > 0 ? "why.idle.queue" : "why.idle");
 }
@@ -43,7 +42,7 @@ function held(): StateLine {
 	};
 }
 
-export function stateLine(): StateLine {
+function machineLine(): StateLine {
 	const s = link.state;
 	if (link.connection !== "open")
 		return { title: t("lost.title"), why: t("why.connection"), tone: "warn", shape: "ring" };
@@ -63,5 +62,15 @@ export function stateLine(): StateLine {
 	return {
 		title: stateWord(s.state), tone: "busy", shape: s.state === "erode" ? "play" : "square",
 		why: isWord(word) ? t(word, { line: s.line, mm: number(s.values.jump_mm ?? 0, 1) }) : "",
+	};
+}
+
+/** What keeps commands away comes first: somebody may have to stop the machine. */
+export function stateLine(): StateLine {
+	const line = machineLine(), s = link.state;
+	if (link.connection !== "open" || s.jobs) return line;
+	return {
+		...line, why: t(s.daemon === "ok" ? "why.nojobs" : "why.noway"),
+		tone: line.tone === "bad" ? "bad" : "warn",
 	};
 }

@@ -46,8 +46,9 @@ export const en = {
 	"why.probe": "Moves until the electrode meets the work.",
 	"why.absent": "edmd does not run on this host. Start it: systemctl start edmd.",
 	"why.lost": "The cycle stands still, or edmd is dead. The last known values are shown.",
-	"why.connection": "The page has lost the panel. What runs goes on; it tries again by itself.",
-	"why.nojobs": "edmd-jobs does not answer: programs and commands have to wait.",
+	"why.connection": "The page has lost the panel. What runs goes on; it tries again by itself. Until then use the machine's own emergency stop.",
+	"why.nojobs": "edmd-jobs does not answer. Hold, Stop and E-stop go to edmd itself, nothing else works; beside them use the machine's own emergency stop.",
+	"why.noway": "No command reaches the machine. Use its own emergency stop.",
 
 	"no.role": "The role {role} only looks on. Log in as operator.",
 	"no.connection": "No connection to the panel.",

@@ -40,8 +40,9 @@ export const zh: Record<Word, string> = {
 	"why.probe": "移动,直到电极碰到工件。",
 	"why.absent": "本机没有运行 edmd。启动:systemctl start edmd。",
 	"why.lost": "控制循环停住或 edmd 已退出。显示的是最后的数值。",
-	"why.connection": "页面与面板失去连接。正在进行的加工不受影响;页面会自动重连。",
-	"why.nojobs": "edmd-jobs 没有应答:程序和命令要等待。",
+	"why.connection": "页面与面板失去连接。正在进行的加工不受影响;页面会自动重连。在此之前请用机床自身的急停按钮。",
+	"why.nojobs": "edmd-jobs 没有应答。只有暂停、停止和急停仍直接发给 edmd;另外请用机床自身的急停按钮。",
+	"why.noway": "任何命令都到不了机床。请用机床自身的急停按钮。",
 
 	"no.role": "权限“{role}”只能查看。请以操作员登录。",
 	"no.connection": "没有与面板连接。",
@@ -195,6 +196,7 @@ export const zhFaults: Record<Fault, FaultWords> = {
 	"fire": { what: "起火", why: "PLC 的火焰探测器报告", clear: `灭火;${RESET}` },
 	"m-code": { what: "PLC 没有及时执行 M 代码", why: "m_timeout_s 内没有应答", clear: "复位;启动会再次等待应答,结束任务放弃" },
 	"stuck": { what: "运动停住而没有原因", why: "应当移动,没有东西阻止,一秒钟没有走一个格点:路径或 edmd 的缺陷", clear: "连同程序一起报告;复位;启动重试,结束任务放弃" },
+	"generator": { what: "脉冲电源没有条件所要求的值", why: "它不应答、报告的值与要求的不同,或者它的线没有响应;edmd 的日志写明是哪个字段、要求什么、报告什么", clear: "检查脉冲电源和电缆;复位;启动继续,停止结束任务" },
 };
 
 export const zhHunting = "提高 servo_v,降低 feed_gain_mm_s_v,或更频繁地抬刀(减小 [jump] every_s);edmsim --tune 可求得数值。";

@@ -148,9 +148,13 @@ int interp_build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
  */
 int interp_build_flush(struct interp_build *b, struct interp_diag *diag);
 
-/** interp_build_arc() - an arc to @end_mm; a helix if other axes move too.
- *  The radii at the start and at the end may differ by 2 pulses, or by 0.1 % if
- *  that is more, but never by more than 5 pulses. */
+/**
+ * interp_build_arc() - an arc to @end_mm; a helix if other axes move too.
+ *
+ * Ends and centre may be rounded, so that the radii at both ends differ; the
+ * reader has checked that it is no more.  The arc goes through both ends: its
+ * centre moves along the chord, or it becomes two segments, or a line.
+ */
 int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		     const struct interp_build_arc *arc,
 		     const struct interp_build_word *w,

@@ -70,6 +70,17 @@ struct interp_electrodes {
 					 * program */
 };
 
+/* What of a program reaches the generator. */
+struct interp_delivery {
+	/* Return: 0, or -EINVAL with found and wanted of @why filled; @who is
+	 * named in them. */
+	int (*takes)(const void *arg, const struct interp_tech *t,
+		     const char *who, struct interp_diag *why);
+	const void *arg;
+	const char *no_pump, *no_sense;	/* what would be accepted instead;
+					 * NULL: they do */
+};
+
 struct interp_nc_options {
 	const struct interp_machine *machine;
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
@@ -87,6 +98,7 @@ struct interp_nc_options {
 	const struct interp_tech *machine_tech;	/* lent: the machine's own
 				 * values, which conditions go over; NULL: not
 				 * looked at */
+	const struct interp_delivery *delivery;	/* lent; NULL: all does */
 	const struct interp_mcode *mcode;	/* lent, INTERP_NMCODES of
 				 * them by number: the PLC's; NULL: none */
 	const struct interp_electrodes *electrodes;	/* lent; NULL: their

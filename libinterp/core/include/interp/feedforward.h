@@ -19,7 +19,6 @@ enum {
 	INTERP_COMPENSATE_CROSS = 1 << 1,
 	INTERP_COMPENSATE_PREDICTIVE = 1 << 2,
 	INTERP_COMPENSATE_ZPETC = 1 << 3,
-	INTERP_COMPENSATE_TWIN = 1 << 4,
 };
 
 /* Gains; those of methods not chosen are not read. */

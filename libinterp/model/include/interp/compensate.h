@@ -13,8 +13,6 @@
  *			the horizon, and measured_1_s times the present error
  *			(u + Kff dy_pred + Kfb dy_meas)
  *	zpetc		the axis models inverted with zero phase (Tomizuka)
- *	twin		the set values were corrected beforehand; see
- *			tests/experiments/tried/set_twin.h
  *
  * They can be combined, except feedforward and zpetc, which correct the same
  * error.  For a drive that takes places, the result is divided by its gain.

@@ -10,8 +10,8 @@
  *
  * Threads: any.
  */
-#ifndef EDM_PLAIN_H
-#define EDM_PLAIN_H
+#ifndef COMMON_PLAIN_H
+#define COMMON_PLAIN_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -31,4 +31,4 @@ bool plain_is(const char *s);
  */
 void plain_copy(char *to, size_t room, const char *from);
 
-#endif /* EDM_PLAIN_H */
+#endif /* COMMON_PLAIN_H */

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * check_generator.c - [generator]: what its keys must agree on
+ */
+#include "keys.h"
+
+#include <errno.h>
+#include <string.h>
+
+#define WANTED_LINES	"lines, as lines 20 21 26 weights 3 6 12, or as lines " \
+			"5 6 codes 2 4 8 16; one line for what is on or off"
+#define WANTED_CAN	"can ID byte N, as can 1009 byte 2 bits 16 scale 0.1; " \
+			"or bit N, of the byte"
+
+struct check {
+	const struct machine_config *c;
+	const struct config_lines *lines;
+	struct interp_diag *diag;
+};
+
+/* Found and wanted are filled; the line is that of @key. */
+static int refuse(struct check *q, const char *key)
+{
+	q->diag->line = q->lines->at[config_key_find(SECTION_GENERATOR, key)]
+				    [0];
+	q->diag->column = 0;
+	return -EINVAL;
+}
+
+static const char *key_name(int field, bool told, char *buf, size_t size)
+{
+	snprintf(buf, size, "%s%s", told ? "told_" : "", process_name(field));
+	return buf;
+}
+
+static int check_way(struct check *q, int field, bool told)
+{
+	const char *text = told ? q->c->generator.told[field] :
+				  q->c->generator.field[field];
+	const int interface = config_generator_interface(q->c);
+	struct config_way w;
+	const char *wrong;
+	char key[24];
+
+	if (!told && strcmp(text, "auto") == 0)
+		return 0;
+	key_name(field, told, key, sizeof(key));
+	wrong = config_way_read(text, field, &w);
+	if (!wrong && w.kind != WAY_NONE && interface != GENERATOR_LINES &&
+	    interface != GENERATOR_CAN)
+		wrong = "is of a generator without interface lines or can";
+	if (!wrong && w.kind == WAY_CAN && interface == GENERATOR_LINES)
+		wrong = "is a frame, and the interface is lines";
+	if (!wrong && told && w.kind == WAY_LINES)
+		wrong = "is told by lines, which are outputs";
+	if (!wrong && !told && w.kind != WAY_NONE &&
+	    config_generator_gpio(q->c, field))
+		wrong = "is a second way: gpio has a line for it";
+	if (!wrong)
+		return 0;
+	interp_diag_say(q->diag, "generator.%s \"%.60s\" %s; none, %s; %s",
+			key, text, wrong, WANTED_LINES, WANTED_CAN);
+	return refuse(q, key);
+}
+
+static bool is_line(const struct check *q, const struct config_line_at *a,
+		    const struct config_line_at *b)
+{
+	const char *chip = q->c->gpio.chip;
+
+	return a->wired && b->wired && a->offset == b->offset &&
+	       strcmp(*a->chip ? a->chip : chip,
+		      *b->chip ? b->chip : chip) == 0;
+}
+
+static int refuse_line(struct check *q, int field, const char *other,
+		       const struct config_line_at *at)
+{
+	interp_diag_say(q->diag, "generator.%s and %s are both line %u; a "
+			"line of its own for each", process_name(field), other,
+			at->offset);
+	return refuse(q, process_name(field));
+}
+
+static int check_gpio_line(struct check *q, int field,
+			   const struct config_line_at *at)
+{
+	struct config_line_at other;
+	char name[32];
+
+	for (int i = 0; i < CONFIG_NLINES; i++) {
+		config_line_read(q->c->gpio.line[i], &other);
+		if (!is_line(q, at, &other))
+			continue;
+		snprintf(name, sizeof(name), "gpio.%s", config_line_name(i));
+		return refuse_line(q, field, name, at);
+	}
+	return 0;
+}
+
+static int check_same_line(struct check *q, int field, int k,
+			   const struct config_way *w, int other)
+{
+	struct config_way x;
+	char name[32];
+
+	config_way(q->c, other, false, &x);
+	for (int j = 0; x.kind == WAY_LINES && j < x.nlines; j++) {
+		if ((other == field && j >= k) ||
+		    !is_line(q, &w->line[k], &x.line[j]))
+			continue;
+		snprintf(name, sizeof(name), "generator.%s",
+			 process_name(other));
+		return refuse_line(q, field, name, &w->line[k]);
+	}
+	return 0;
+}
+
+static int check_lines(struct check *q, int field)
+{
+	struct config_way w;
+
+	config_way(q->c, field, false, &w);
+	for (int k = 0; w.kind == WAY_LINES && k < w.nlines; k++) {
+		if (check_gpio_line(q, field, &w.line[k]))
+			return -EINVAL;
+		for (int i = 0; i <= field; i++)
+			if (check_same_line(q, field, k, &w, i))
+				return -EINVAL;
+	}
+	return 0;
+}
+
+/* The second byte of the usual frame counts the frames. */
+static bool is_count(const struct check *q, const struct config_way *w)
+{
+	return w->id == (uint16_t)q->c->generator.can_id &&
+	       w->bit < 16 && w->bit + w->bits > 8;
+}
+
+static int check_bits(struct check *q, int field, bool told)
+{
+	struct config_way w, x;
+	char key[24];
+
+	config_way(q->c, field, told, &w);
+	if (w.kind != WAY_CAN)
+		return 0;
+	key_name(field, told, key, sizeof(key));
+	for (int i = 0; i < field; i++) {
+		if (told && i >= INTERP_NGENERATOR)
+			break;
+		config_way(q->c, i, told, &x);
+		if (x.kind != WAY_CAN || x.id != w.id ||
+		    x.bit + x.bits <= w.bit || w.bit + w.bits <= x.bit)
+			continue;
+		interp_diag_say(q->diag, "generator.%s and generator.%s%s "
+				"have bits of frame %u in common; a place of "
+				"its own for each", key, told ? "told_" : "",
+				process_name(i), w.id);
+		return refuse(q, key);
+	}
+	if (!told && is_count(q, &w)) {
+		interp_diag_say(q->diag, "generator.%s is in byte 1 of frame "
+				"%u, which counts the frames; another byte, or "
+				"another identifier", key, w.id);
+		return refuse(q, key);
+	}
+	return 0;
+}
+
+static int check_id(struct check *q, const char *key, uint32_t id)
+{
+	const struct config_can402 *k = &q->c->can402;
+	bool taken = id < 0x180 || id >= 0x580 || id == (uint32_t)k->gap_id;
+
+	if (q->c->backend != BACKEND_CAN402 || id == 0 ||
+	    strcmp(k->interface, q->c->generator.can_interface) != 0)
+		return 0;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		taken = taken || (k->node[i] > 0 &&
+				  (uint32_t)k->node[i] == (id & 0x7f));
+	if (!taken)
+		return 0;
+	interp_diag_say(q->diag, "generator.%s %u, which is in use on that "
+			"bus; one from 384 to 1407 whose rest by 128 is no "
+			"drive's node", key, id);
+	return refuse(q, key);
+}
+
+static int check_ids(struct check *q, int field, bool told)
+{
+	struct config_way w;
+	char key[24];
+
+	if (told && field >= INTERP_NGENERATOR)
+		return 0;
+	config_way(q->c, field, told, &w);
+	return w.kind == WAY_CAN &&
+	       check_id(q, key_name(field, told, key, sizeof(key)), w.id);
+}
+
+static int check_by_hand(struct check *q)
+{
+	char odd[CONFIG_WAY_WORD];
+
+	config_hand_read(q->c->generator.by_hand, odd);
+	if (!*odd)
+		return 0;
+	interp_diag_say(q->diag, "generator.by_hand has \"%s\"; of peak_a "
+			"on_us off_us polarity ignition_v iso sense pump, "
+			"those that a person sets", odd);
+	return refuse(q, "by_hand");
+}
+
+/* As for [gpio] spark: something must end the sparks after edmd is gone. */
+static int check_guard(struct check *q, int line, const char *by,
+		       const char *key)
+{
+	struct config_line_at at;
+	struct config_way w;
+
+	config_way(q->c, PROCESS_SPARK, false, &w);
+	config_line_read(q->c->gpio.line[line], &at);
+	if (w.kind != WAY_LINES || strcmp(by, "none") != 0 ||
+	    (at.wired && q->c->backend == BACKEND_GPIO))
+		return 0;
+	interp_diag_say(q->diag, "generator.spark is a line and there is no "
+			"gpio.%s; gpio.%s_by = in your words, what does it",
+			key, key);
+	return refuse(q, "spark");
+}
+
+static int check_interface(struct check *q)
+{
+	const bool model = config_machine_is(q->c, MACHINE_MODEL);
+	const int i = config_generator_interface(q->c);
+
+	if (model == (i == GENERATOR_SIM) || (model && i == GENERATOR_NONE))
+		return 0;
+	interp_diag_say(q->diag, "generator.interface and machine.backend do "
+			"not agree; interface = sim with backend sim, %s",
+			"and none, lines or can with the others");
+	return refuse(q, "interface");
+}
+
+int config_check_generator(const struct machine_config *c,
+			   const struct config_lines *lines,
+			   struct interp_diag *diag)
+{
+	struct check q = { c, lines, diag };
+
+	if (check_interface(&q) || check_by_hand(&q) ||
+	    check_id(&q, "can_id", (uint32_t)c->generator.can_id))
+		return -EINVAL;
+	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+		const bool tells = i < INTERP_NGENERATOR;
+
+		if (check_way(&q, i, false) ||
+		    (tells && check_way(&q, i, true)))
+			return -EINVAL;
+	}
+	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+		const bool tells = i < INTERP_NGENERATOR;
+
+		if (check_lines(&q, i) || check_bits(&q, i, false) ||
+		    (tells && check_bits(&q, i, true)) ||
+		    check_ids(&q, i, false) || check_ids(&q, i, true))
+			return -EINVAL;
+	}
+	return check_guard(&q, LINE_WATCHDOG, c->gpio.watchdog_by,
+			   "watchdog") ||
+	       check_guard(&q, LINE_ESTOP, c->gpio.estop_by, "estop") ?
+	       -EINVAL : 0;
+}

@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * generator.c - [generator]: what reaches it, and what may be asked
+ */
+#include "keys.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+
+/* -- The interface --------------------------------------------------------- */
+
+int config_generator_interface(const struct machine_config *c)
+{
+	if (c->generator.interface != GENERATOR_AUTO)
+		return c->generator.interface;
+	return config_machine_is(c, MACHINE_MODEL) ? GENERATOR_SIM :
+						     GENERATOR_NONE;
+}
+
+bool config_generator_limits(const struct machine_config *c)
+{
+	return config_generator_interface(c) != GENERATOR_SIM &&
+	       config_backend(c)->has_gap(c);
+}
+
+/* What every CAN generator was sent before a machine file could say more. */
+static void usual_frame(const struct machine_config *c, int field,
+			struct config_way *ret)
+{
+	static const char *const at[PROCESS_NFIELDS] = {
+		[PROCESS_SPARK] = "byte 0 bit 0",
+		[PROCESS_PUMP] = "byte 0 bit 1",
+		[INTERP_TECH_POLARITY] = "byte 0 bit 2",
+		[INTERP_TECH_PEAK_A] = "byte 2 scale 0.1",
+		[INTERP_TECH_ON_US] = "byte 4 scale 0.1",
+		[INTERP_TECH_OFF_US] = "byte 6 scale 0.1",
+	};
+	char text[CONFIG_WAY_MAX];
+
+	if (!at[field] || c->generator.can_id == 0)
+		return;
+	snprintf(text, sizeof(text), "can %.0f %s", c->generator.can_id,
+		 at[field]);
+	config_way_read(text, field, ret);
+}
+
+bool config_generator_gpio(const struct machine_config *c, int field)
+{
+	const int line = field == PROCESS_SPARK ? LINE_SPARK :
+			 field == PROCESS_PUMP ? LINE_PUMP : -1;
+	struct config_line_at at;
+
+	if (line < 0 || c->backend != BACKEND_GPIO)
+		return false;
+	config_line_read(c->gpio.line[line], &at);
+	return at.wired;
+}
+
+static void by_itself(const struct machine_config *c, int field,
+		      struct config_way *ret)
+{
+	const int interface = config_generator_interface(c);
+
+	*ret = (struct config_way) { .kind = WAY_NONE };
+	if (interface == GENERATOR_CAN && !config_generator_gpio(c, field))
+		usual_frame(c, field, ret);
+	else if (interface == GENERATOR_SIM || config_generator_gpio(c, field))
+		ret->kind = WAY_OWN;
+	if (ret->kind == WAY_OWN)
+		config_way_all(field, false, &ret->gives);
+}
+
+void config_way(const struct machine_config *c, int field, bool told,
+		struct config_way *ret)
+{
+	const char *text = told ? c->generator.told[field] :
+				  c->generator.field[field];
+
+	if (!told && strcmp(text, "auto") == 0)
+		by_itself(c, field, ret);
+	else if (config_way_read(text, field, ret))
+		*ret = (struct config_way) { .kind = WAY_NONE };
+}
+
+void config_delivers(const struct machine_config *c, int field,
+		     struct process_delivers *ret)
+{
+	char odd[CONFIG_WAY_WORD];
+	struct config_way w;
+
+	config_way(c, field, false, &w);
+	*ret = w.gives;
+	if (config_hand_read(c->generator.by_hand, odd) >> field & 1)
+		config_way_all(field, true, ret);
+}
+
+static void add_id(const struct config_way *w, uint16_t *id, uint32_t *n)
+{
+	uint32_t i = 0;
+
+	while (i < *n && id[i] != w->id)
+		i++;
+	if (w->kind == WAY_CAN && i == *n)
+		id[(*n)++] = w->id;
+}
+
+uint32_t config_generator_frames(const struct machine_config *c,
+				 const char *name)
+{
+	uint16_t id[PROCESS_NFIELDS + INTERP_NGENERATOR];
+	struct config_way w;
+	uint32_t n = 0;
+
+	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+		config_way(c, i, false, &w);
+		add_id(&w, id, &n);
+		if (i < INTERP_NGENERATOR) {
+			config_way(c, i, true, &w);
+			add_id(&w, id, &n);
+		}
+	}
+	return strcmp(c->generator.can_interface, name) == 0 ? n : 0;
+}
+
+/* -- What may be asked ----------------------------------------------------- */
+
+static int refuse_value(const struct process_delivers *d, int field,
+			double value, const char *who,
+			struct interp_diag *diag)
+{
+	const char *name = process_name(field);
+	const char *unit = interp_tech_field[field].unit;
+	char range[120];
+
+	snprintf(diag->found, sizeof(diag->found), "%s: %s %g%s%s does not "
+		 "reach the generator", who, name, value, *unit ? " " : "",
+		 unit);
+	process_range_text(d, field, range, sizeof(range));
+	if (d->there)
+		snprintf(diag->wanted, sizeof(diag->wanted), "%s; or another "
+			 "[generator] %s", range, name);
+	else
+		snprintf(diag->wanted, sizeof(diag->wanted), "no %s in the "
+			 "condition; or [generator] %s = how it is reached; "
+			 "or [generator] by_hand = %s, and a person sets it",
+			 name, name, name);
+	return -EINVAL;
+}
+
+int config_generator_takes(const struct machine_config *c,
+			   const struct interp_tech *t, const char *who,
+			   struct interp_diag *diag)
+{
+	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+		struct process_delivers d;
+
+		if (isnan(t->v[i]) || !config_generator_limits(c))
+			continue;
+		/* A generator that nobody turns round is positive. */
+		if (i == INTERP_TECH_POLARITY && t->v[i] > 0)
+			continue;
+		config_delivers(c, i, &d);
+		if (isnan(process_nearest(&d, i, t->v[i])))
+			return refuse_value(&d, i, t->v[i], who, diag);
+	}
+	return 0;
+}

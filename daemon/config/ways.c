@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * ways.c - how a field reaches the generator, as text of the machine file
+ */
+#include "keys.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NATURAL_BITS	16
+
+struct words {
+	const char *at;
+	char word[CONFIG_WAY_WORD];
+};
+
+static bool next(struct words *w)
+{
+	size_t n;
+
+	w->at += strspn(w->at, " \t,");
+	n = strcspn(w->at, " \t,");
+	snprintf(w->word, sizeof(w->word), "%.*s", (int)n, w->at);
+	w->at += n;
+	return n > 0;
+}
+
+static bool number(const char *word, double *ret)
+{
+	char *end;
+
+	*ret = strtod(word, &end);
+	return end != word && *end == '\0' && isfinite(*ret);
+}
+
+/* On or off; polarity is one of these too. */
+static bool is_switch(int field)
+{
+	return field >= INTERP_NGENERATOR || field == INTERP_TECH_POLARITY ||
+	       field == INTERP_TECH_ISO;
+}
+
+static double range_min(int field)
+{
+	return field < INTERP_NGENERATOR ? interp_tech_field[field].min : 0;
+}
+
+static double range_max(int field)
+{
+	return field < INTERP_NGENERATOR ? interp_tech_field[field].max : 1;
+}
+
+static void give(struct process_delivers *d, double value)
+{
+	if (d->n < PROCESS_VALUES_MAX)
+		d->value[d->n++] = value;
+}
+
+static void give_switch(struct process_delivers *d, int field)
+{
+	give(d, field == INTERP_TECH_POLARITY ? -1 : 0);
+	give(d, 1);
+}
+
+void config_way_all(int field, bool by_hand, struct process_delivers *ret)
+{
+	*ret = (struct process_delivers) {
+		.there = true, .by_hand = by_hand,
+		.min = range_min(field), .max = range_max(field),
+	};
+	if (is_switch(field))
+		give_switch(ret, field);
+}
+
+static const char *read_lines(struct words *w, struct config_way *ret)
+{
+	while (next(w) && strcmp(w->word, "weights") != 0 &&
+	       strcmp(w->word, "codes") != 0) {
+		if (ret->nlines == CONFIG_WAY_LINES)
+			return "has a seventh line";
+		if (config_line_read(w->word, &ret->line[ret->nlines]) ||
+		    !ret->line[ret->nlines].wired)
+			return "has a word that is no line";
+		ret->nlines++;
+	}
+	return ret->nlines ? NULL : "has no line";
+}
+
+static const char *read_codes(struct words *w, struct config_way *ret)
+{
+	const uint32_t most = 1u << ret->nlines;
+	double v;
+
+	while (next(w)) {
+		if (ret->ncodes == most)
+			return "has more codes than its lines make";
+		if (!number(w->word, &v))
+			return "has a code that is no number";
+		ret->code[ret->ncodes++] = v;
+	}
+	return ret->ncodes < 2 ? "has fewer than two codes" : NULL;
+}
+
+static const char *read_weights(struct words *w, struct config_way *ret)
+{
+	double weight[CONFIG_WAY_LINES];
+	uint8_t n = 0;
+
+	while (next(w)) {
+		if (n == ret->nlines)
+			return "has more weights than lines";
+		if (!number(w->word, &weight[n]) || !(weight[n] > 0))
+			return "has a weight that is not above 0";
+		n++;
+	}
+	if (n < ret->nlines)
+		return "has fewer weights than lines";
+	ret->ncodes = (uint8_t)(1u << n);
+	for (uint32_t code = 0; code < ret->ncodes; code++)
+		for (uint8_t i = 0; i < n; i++)
+			ret->code[code] += code >> i & 1 ? weight[i] : 0;
+	return NULL;
+}
+
+/* No line on is no value of a sum: it would be a current of 0. */
+static const char *give_codes(struct config_way *w, int field)
+{
+	for (uint32_t i = 0; i < w->ncodes; i++) {
+		const double v = w->code[i];
+
+		if (v == 0)
+			continue;
+		if (v < range_min(field) || v > range_max(field))
+			return "makes a value out of the field's range";
+		give(&w->gives, v);
+	}
+	return NULL;
+}
+
+static const char *read_way_lines(struct words *w, int field,
+				  struct config_way *ret)
+{
+	const char *wrong = read_lines(w, ret);
+	const bool weights = strcmp(w->word, "weights") == 0;
+
+	ret->kind = WAY_LINES;
+	ret->gives.there = true;
+	if (wrong)
+		return wrong;
+	if (is_switch(field)) {
+		give_switch(&ret->gives, field);
+		return *w->word || ret->nlines > 1 ?
+		       "is of a field that is on or off" : NULL;
+	}
+	if (!*w->word)
+		return "has neither weights nor codes";
+	wrong = weights ? read_weights(w, ret) : read_codes(w, ret);
+	return wrong ? wrong : give_codes(ret, field);
+}
+
+static const char *read_can_pair(struct words *w, struct config_way *ret,
+				 double at[2])
+{
+	char key[CONFIG_WAY_WORD];
+	double v;
+
+	memcpy(key, w->word, sizeof(key));
+	if (!next(w) || !number(w->word, &v))
+		return "has a word without its number";
+	if (strcmp(key, "byte") == 0 && v >= 0 && v <= 7 && v == floor(v))
+		at[0] = v;
+	else if (strcmp(key, "bit") == 0 && v >= 0 && v <= 7 && v == floor(v))
+		at[1] = v;
+	else if (strcmp(key, "bits") == 0 && v >= 1 && v <= 32 &&
+		 v == floor(v))
+		ret->bits = (uint8_t)v;
+	else if (strcmp(key, "scale") == 0 && v > 0)
+		ret->scale = v;
+	else
+		return "has a word that is none of byte 0 to 7, bit 0 to 7, "
+		       "bits 1 to 32, scale above 0";
+	return NULL;
+}
+
+/* The count with all bits set says: the generator's own setting. */
+static void give_counts(struct config_way *w, int field)
+{
+	const double counts = exp2(w->bits) - 2;
+	const double least = ceil(range_min(field) / w->scale);
+
+	w->gives.step = w->scale;
+	w->gives.min = fmax(least, 1) * w->scale;
+	w->gives.max = fmin(counts * w->scale, range_max(field));
+}
+
+static const char *read_can(struct words *w, int field, struct config_way *ret)
+{
+	double id, at[2] = { -1, 0 };
+	const char *wrong;
+
+	if (!next(w) || !number(w->word, &id) || id < 1 || id > 2047 ||
+	    id != floor(id))
+		return "has no identifier of 1 to 2047";
+	*ret = (struct config_way) {
+		.kind = WAY_CAN, .gives.there = true, .id = (uint16_t)id,
+		.bits = is_switch(field) ? 1 : NATURAL_BITS, .scale = 1,
+	};
+	while (next(w)) {
+		wrong = read_can_pair(w, ret, at);
+		if (wrong)
+			return wrong;
+	}
+	if (at[0] < 0)
+		return "has no byte";
+	ret->bit = (uint8_t)(8 * at[0] + at[1]);
+	if (ret->bit + ret->bits > 64)
+		return "goes beyond the eighth byte";
+	if (is_switch(field) != (ret->bits == 1))
+		return is_switch(field) ? "is of a field that is on or off" :
+					  "is one bit of a number";
+	if (is_switch(field))
+		give_switch(&ret->gives, field);
+	else
+		give_counts(ret, field);
+	return ret->gives.n || ret->gives.max > ret->gives.min ? NULL :
+	       "cannot hold a value of the field";
+}
+
+const char *config_way_read(const char *text, int field,
+			    struct config_way *ret)
+{
+	struct words w = { .at = text };
+
+	*ret = (struct config_way) { .kind = WAY_NONE };
+	next(&w);
+	if (strcmp(w.word, "none") == 0)
+		return *w.at ? "has a word after none" : NULL;
+	if (strcmp(w.word, "lines") == 0 || strcmp(w.word, "line") == 0)
+		return read_way_lines(&w, field, ret);
+	if (strcmp(w.word, "can") == 0)
+		return read_can(&w, field, ret);
+	return "begins with no word of auto, none, lines, can";
+}
+
+uint32_t config_hand_read(const char *text, char odd[CONFIG_WAY_WORD])
+{
+	struct words w = { .at = text };
+	uint32_t fields = 0;
+
+	*odd = '\0';
+	while (next(&w) && strcmp(w.word, "none") != 0) {
+		int i = 0;
+
+		while (i < PROCESS_SPARK && strcmp(w.word, process_name(i)))
+			i++;
+		if (i == PROCESS_SPARK && !*odd)
+			memcpy(odd, w.word, sizeof(w.word));
+		fields |= i < PROCESS_SPARK ? 1u << i : 0;
+	}
+	return fields;
+}

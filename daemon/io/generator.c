@@ -1,0 +1,247 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * generator.c - a generator in front of the machine that moves the axes
+ */
+#include "generator_own.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#define REFRESH_S	2e-3
+
+/* -- What the log says ----------------------------------------------------- */
+
+void generator_tell(struct generator *g, const struct generator_note *n)
+{
+	const uint32_t put = atomic_load(&g->put);
+
+	if (put - atomic_load(&g->taken) == GENERATOR_NOTES)
+		return;
+	g->notes[put % GENERATOR_NOTES] = *n;
+	atomic_store(&g->put, put + 1);
+}
+
+static void put_text(const struct generator_note *n, char *buf, size_t size)
+{
+	const char *name = process_name(n->field);
+
+	switch (n->kind) {
+	case GENERATOR_SILENT:
+		snprintf(buf, size, "generator: it does not tell its %s any "
+			 "more", name);
+		break;
+	case GENERATOR_DIFFERS:
+		snprintf(buf, size, "generator: %s was in force and is no "
+			 "more: asked %g, told %g", name, n->asked, n->told);
+		break;
+	case GENERATOR_LATE:
+		snprintf(buf, size, "generator: %s is not in force in "
+			 "confirm_s: asked %g, told %g", name, n->asked,
+			 n->told);
+		break;
+	case GENERATOR_LINES_LOST:
+		snprintf(buf, size, "generator: its lines do not answer");
+		break;
+	case GENERATOR_BUS_DOWN:
+		snprintf(buf, size, "generator: its CAN interface is down");
+		break;
+	case GENERATOR_BUS_BACK:
+		snprintf(buf, size, "generator: its CAN interface is back");
+		break;
+	}
+}
+
+static bool generator_note(void *self, char *buf, size_t size)
+{
+	struct generator *g = self;
+	const uint32_t taken = atomic_load(&g->taken);
+
+	if (taken == atomic_load(&g->put))
+		return g->axes.note && g->axes.note(g->axes.self, buf, size);
+	put_text(&g->notes[taken % GENERATOR_NOTES], buf, size);
+	atomic_store(&g->taken, taken + 1);
+	return true;
+}
+
+/* -- What it says ---------------------------------------------------------- */
+
+static void trouble(struct generator *g, enum generator_note_kind kind,
+		    int field)
+{
+	if (g->says.trouble)
+		return;
+	g->says.trouble = true;
+	generator_tell(g, &(struct generator_note) {
+		.kind = kind, .field = field,
+		.asked = field < INTERP_NGENERATOR ? g->value[field] : 0,
+		.told = field < INTERP_NGENERATOR ? g->heard[field] : 0,
+	});
+}
+
+static bool tells(const struct generator *g, int field)
+{
+	return g->told[field].kind == WAY_CAN;
+}
+
+static bool agrees(const struct generator *g, int field)
+{
+	const struct config_way *w = &g->told[field];
+	const double slack = fmax(w->scale, g->way[field].scale) * 0.501;
+
+	return !tells(g, field) || isnan(g->value[field]) ||
+	       fabs(g->heard[field] - g->value[field]) <= slack;
+}
+
+/* The first field that it tells otherwise; -1: there is none. */
+static int odd_one(const struct generator *g)
+{
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		if (!agrees(g, i))
+			return i;
+	return -1;
+}
+
+static void look(struct generator *g)
+{
+	const int odd = odd_one(g);
+
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		if (tells(g, i) && g->age[i] > g->silent)
+			trouble(g, GENERATOR_SILENT, i);
+	if (odd < 0) {
+		g->says.in_force = g->asked;
+		g->waited = 0;
+	} else if (g->says.in_force == g->asked) {
+		trouble(g, GENERATOR_DIFFERS, odd);
+	} else if (++g->waited > g->confirm) {
+		trouble(g, GENERATOR_LATE, odd);
+	}
+}
+
+static void generator_read(void *self, struct io_inputs *in)
+{
+	struct generator *g = self;
+
+	g->axes.read(g->axes.self, in);
+	g->ill = in->trouble != IO_WELL || in->lost;
+	if (g->fd >= 0)
+		generator_can_read(g);
+	look(g);
+	in->generator = g->says;
+	/* Where the bus is the drives' too, it is their trouble. */
+	in->generator.trouble = g->says.trouble || (g->down && !g->ill);
+}
+
+/* -- What it is asked for -------------------------------------------------- */
+
+uint32_t generator_code(const struct config_way *w, double value)
+{
+	for (uint32_t i = 0; i < w->ncodes; i++)
+		if (w->code[i] == value)
+			return i;
+	return 0;
+}
+
+static void take(struct generator *g, const struct io_outputs *out)
+{
+	if (out->asked != g->asked)
+		g->waited = 0;
+	g->asked = out->asked;
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		g->value[i] = out->pulse[i];
+	if (out->reset)
+		g->says.trouble = false;
+	g->value[PROCESS_SENSE] = out->sense;
+	g->value[PROCESS_PUMP] = out->pump && !g->ill;
+	g->value[PROCESS_SPARK] = out->power && !g->ill && !g->says.trouble;
+}
+
+static void generator_write(void *self, const struct io_outputs *out)
+{
+	struct generator *g = self;
+
+	take(g, out);
+	if (g->lines && !g->lines_write(g))
+		trouble(g, GENERATOR_LINES_LOST, PROCESS_NFIELDS);
+	if (g->fd >= 0)
+		generator_can_write(g);
+	g->axes.write(g->axes.self, out);
+}
+
+static bool generator_origin(void *self, int32_t ret[IO_NAXES])
+{
+	const struct generator *g = self;
+
+	return g->axes.origin(g->axes.self, ret);
+}
+
+static void generator_originate(void *self, const int32_t zero[IO_NAXES])
+{
+	const struct generator *g = self;
+
+	g->axes.originate(g->axes.self, zero);
+}
+
+static void generator_close(void *self)
+{
+	struct generator *g = self;
+
+	for (int i = 0; i < PROCESS_NFIELDS; i++)
+		g->value[i] = i < INTERP_NGENERATOR ? (double)NAN : 0;
+	if (g->lines) {
+		g->lines_write(g);
+		g->lines_close(g->lines);
+	}
+	if (g->fd >= 0)
+		generator_can_write(g);
+	g->axes.close(g->axes.self);
+	generator_forget(g);
+}
+
+static uint32_t periods(const struct machine_config *c, double s)
+{
+	const double n = s * 1e9 / (double)config_period_ns(c);
+
+	return n < 1 ? 1 : (uint32_t)(n + 0.5);
+}
+
+void generator_forget(struct generator *g)
+{
+	if (g->fd >= 0)
+		close(g->fd);
+	free(g);
+}
+
+struct generator *generator_attach(struct io_machine *m,
+				   const struct machine_config *c, int fd)
+{
+	struct generator *g = calloc(1, sizeof(*g));
+
+	if (!g)
+		return NULL;
+	g->axes = *m;
+	g->fd = fd;
+	g->refresh = periods(c, REFRESH_S);
+	g->silent = periods(c, c->generator.silent_ms * 1e-3);
+	g->confirm = periods(c, c->generator.confirm_s);
+	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+		config_way(c, i, false, &g->way[i]);
+		g->value[i] = i < INTERP_NGENERATOR ? (double)NAN : 0;
+	}
+	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+		config_way(c, i, true, &g->told[i]);
+		g->heard[i] = (double)NAN;
+	}
+	if (fd >= 0)
+		generator_can_init(g, c);
+	m->self = g;
+	m->read = generator_read;
+	m->write = generator_write;
+	m->close = generator_close;
+	m->note = generator_note;
+	m->origin = m->origin ? generator_origin : NULL;
+	m->originate = m->originate ? generator_originate : NULL;
+	return g;
+}

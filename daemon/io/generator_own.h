@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * generator_own.h - what the files of the generator share
+ *
+ * Threads: as in io.h; generator_note() belongs to the thread that logs.
+ */
+#ifndef IO_GENERATOR_OWN_H
+#define IO_GENERATOR_OWN_H
+
+#include "can_socket.h"
+#include "config.h"
+#include "generator.h"
+
+#include <stdatomic.h>
+
+#define GENERATOR_FRAMES	(PROCESS_NFIELDS + 1)
+#define GENERATOR_NOTES		16	/* a power of two */
+
+struct generator_frame {
+	struct can_msg sent;		/* as it was sent last */
+	bool counts;			/* in its second byte */
+	uint32_t age;			/* periods since; refresh: now */
+};
+
+enum generator_note_kind {
+	GENERATOR_SILENT, GENERATOR_DIFFERS, GENERATOR_LATE,
+	GENERATOR_LINES_LOST, GENERATOR_BUS_DOWN, GENERATOR_BUS_BACK
+};
+
+struct generator_note {
+	enum generator_note_kind kind;
+	int field;
+	double asked, told;
+};
+
+struct generator_lines;
+
+struct generator {
+	struct io_machine axes;		/* behind it */
+	struct config_way way[PROCESS_NFIELDS], told[INTERP_NGENERATOR];
+	double value[PROCESS_NFIELDS];	/* as asked last; NAN: its own */
+	uint32_t asked;			/* io_outputs.asked of these */
+	uint32_t refresh, silent, confirm;	/* periods */
+	struct io_generator says;
+	uint32_t waited;		/* periods for its word */
+	bool ill;			/* the axes: no sparks */
+	/* CAN; fd -1: none. */
+	int fd;
+	struct generator_frame frame[GENERATOR_FRAMES];
+	uint32_t nframes;
+	bool down;
+	double heard[INTERP_NGENERATOR];	/* NAN: nothing yet */
+	uint32_t age[INTERP_NGENERATOR];	/* periods */
+	/* Lines; NULL: none. */
+	struct generator_lines *lines;
+	bool (*lines_write)(struct generator *g);
+	void (*lines_close)(struct generator_lines *l);
+	/* Written by read and write, taken by note. */
+	struct generator_note notes[GENERATOR_NOTES];
+	_Atomic uint32_t put, taken;
+};
+
+/**
+ * generator_attach() - put one in front of @m whose frames go through @fd,
+ * which belongs to it from then on; -1: it has none.
+ * Return: NULL without memory.  Startup only.
+ */
+struct generator *generator_attach(struct io_machine *m,
+				   const struct machine_config *c, int fd);
+
+/** generator_forget() - free one that was not opened whole, without its lines.
+ *  Startup only. */
+void generator_forget(struct generator *g);
+
+/** generator_code() - the code of the lines for @value; 0: none is on. */
+uint32_t generator_code(const struct config_way *w, double value);
+
+/** generator_tell() - what the log is to say next. */
+void generator_tell(struct generator *g, const struct generator_note *n);
+
+/* -- generator_can.c ------------------------------------------------------- */
+
+/** generator_can_init() - lay out the frames, all off. */
+void generator_can_init(struct generator *g, const struct machine_config *c);
+
+/** generator_can_write() - send what has changed or is due. */
+void generator_can_write(struct generator *g);
+
+/** generator_can_read() - take what it tells. */
+void generator_can_read(struct generator *g);
+
+/* -- generator_lines.c ----------------------------------------------------- */
+
+/** generator_lines_open() - request the lines, all off.  Return: as
+ *  io_gpio_open(). */
+int generator_lines_open(struct generator *g, const struct machine_config *c,
+			 struct interp_diag *diag);
+
+#endif /* IO_GENERATOR_OWN_H */

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* asking.c - what the generator is asked for, and whether it is in force */
+#include "gap/asking.h"
+
+#include "cycle.h"
+
+#include <string.h>
+
+static bool same(double a, double b)
+{
+	return a == b || (isnan(a) && isnan(b));
+}
+
+void asking_init(struct asking *a)
+{
+	*a = (struct asking) { .in_force = true };
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		a->now[i] = a->place[i] = a->hand[i] = (double)NAN;
+}
+
+/* What the place asks for, as the generator can do it. */
+static double wanted(const struct cycle *c, int i)
+{
+	return process_nearest(&c->config.asking.field[i], i, c->out.pulse[i]);
+}
+
+double asking_off_us(const struct cycle *c, double off_us)
+{
+	const struct asking_config *k = &c->config.asking;
+	const struct process_delivers *d = &k->field[INTERP_TECH_OFF_US];
+
+	return !k->limited ? off_us : d->by_hand ? (double)NAN :
+	       process_nearest(d, INTERP_TECH_OFF_US, off_us);
+}
+
+bool asking_takes(const struct cycle *c, uint32_t field, double value)
+{
+	const struct asking_config *k = &c->config.asking;
+
+	if (!k->limited || field >= INTERP_NGENERATOR || isnan(value) ||
+	    k->field[field].by_hand ||
+	    (field == INTERP_TECH_POLARITY && value > 0))
+		return true;
+	return !isnan(process_nearest(&k->field[field], (int)field, value));
+}
+
+/* -- What a person sets ---------------------------------------------------- */
+
+/* The fields that nobody has set yet, a bit each. */
+static uint32_t unset(const struct cycle *c)
+{
+	uint32_t fields = 0;
+
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		if (c->config.asking.field[i].by_hand &&
+		    !isnan(c->out.pulse[i]) &&
+		    c->out.pulse[i] != c->asking.hand[i])
+			fields |= 1u << i;
+	return fields;
+}
+
+static bool would_spark(const struct cycle *c)
+{
+	return c->config.asking.limited && state_duty[c->state].power &&
+	       !c->job.power_off && !c->config.dry_run;
+}
+
+bool asking_hand(struct cycle *c)
+{
+	if (!would_spark(c) || !unset(c))
+		return false;
+	c->asking.stands = unset(c);
+	return true;
+}
+
+/* Somebody started it again.  What was set for another job is not known. */
+static void hear_hand(struct cycle *c)
+{
+	struct asking *a = &c->asking;
+
+	for (int i = 0; i < INTERP_NGENERATOR && a->path != c->out.path; i++)
+		a->hand[i] = (double)NAN;
+	a->path = c->out.path;
+	if (!a->stands || !state_duty[c->state].running)
+		return;
+	a->stands = 0;
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		if (!isnan(c->out.pulse[i]))
+			a->hand[i] = c->out.pulse[i];
+}
+
+/* -- What the generator is asked for --------------------------------------- */
+
+static bool is_the_places(const struct cycle *c)
+{
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		if (!same(wanted(c, i), c->asking.place[i]))
+			return false;
+	return true;
+}
+
+static bool turns_round(const struct cycle *c)
+{
+	const double now = c->asking.place[INTERP_TECH_POLARITY];
+
+	return (wanted(c, INTERP_TECH_POLARITY) < 0) != (now < 0);
+}
+
+/* Nothing of it changes in the period in which the sparks go off: that may take
+ * another way, and longer. */
+static bool is_dark(const struct cycle *c)
+{
+	const uint64_t least = turns_round(c) ?
+			       c->config.asking.polarity_cycles : 0;
+
+	return c->asking.dark > 0 && c->asking.dark >= least;
+}
+
+static void ask(struct cycle *c)
+{
+	struct asking *a = &c->asking;
+	double off_us;
+
+	if (!is_the_places(c)) {
+		if (!is_dark(c))
+			return;
+		for (int i = 0; i < INTERP_NGENERATOR; i++)
+			a->now[i] = a->place[i] = wanted(c, i);
+		a->needed = ++a->version;
+		a->age = 0;
+	}
+	off_us = asking_off_us(c, arcing_off_us(c));
+	if (same(off_us, a->now[INTERP_TECH_OFF_US]))
+		return;
+	a->now[INTERP_TECH_OFF_US] = off_us;
+	a->version++;
+}
+
+static bool is_confirmed(const struct cycle *c, const struct io_inputs *in)
+{
+	const struct asking *a = &c->asking;
+
+	return c->config.asking.answers ?
+	       (int32_t)(in->generator.in_force - a->needed) >= 0 :
+	       a->age > c->config.asking.settle_cycles || a->needed == 0;
+}
+
+void asking_step(struct cycle *c, const struct io_inputs *in)
+{
+	struct asking *a = &c->asking;
+
+	if (!c->config.asking.limited) {
+		memcpy(a->now, c->out.pulse, sizeof(a->now));
+		a->now[INTERP_TECH_OFF_US] = arcing_off_us(c);
+		return;
+	}
+	hear_hand(c);
+	a->dark = c->out.power ? 0 : a->dark + 1;
+	a->age++;
+	/* Where these end, nothing may have changed. */
+	if (c->state != STATE_JUMP && c->state != STATE_RETRACT)
+		ask(c);
+	a->in_force = is_the_places(c) && !unset(c) && is_confirmed(c, in);
+}
+
+bool asking_waits(const struct cycle *c)
+{
+	return would_spark(c) && !c->asking.in_force;
+}

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * asking.h - what the generator is asked for, and whether it is in force
+ *
+ * The condition of the place where there will be sparks is turned into values
+ * that the generator can do.  A jump or a retract over a change of condition
+ * asks for nothing new: the place where it ends counts.  Each change of what a
+ * place needs has a version.  It is in force when the generator has said so,
+ * or, if it cannot, after settle_cycles.  There are no sparks before, forward
+ * and on the way back; the machine stands at the place and waits.  A longer off
+ * time against arcs is asked for while the sparks go on.
+ *
+ * A field that a person sets makes the job stand where it changes.  The start
+ * that follows says that it is set.
+ *
+ * Threads: RT-safe.
+ */
+#ifndef RT_ASKING_H
+#define RT_ASKING_H
+
+#include "io.h"
+#include "process.h"
+
+struct cycle;
+
+struct asking_config {
+	bool limited;			/* false: all is in force at once */
+	bool answers;			/* the generator says what is */
+	uint64_t settle_cycles;		/* if it does not */
+	uint64_t polarity_cycles;	/* without sparks, before a change */
+	struct process_delivers field[INTERP_NGENERATOR];
+};
+
+struct asking {
+	double now[INTERP_NGENERATOR];	/* asked; NAN: its own setting */
+	double place[INTERP_NGENERATOR];	/* the same without steps
+						 * against arcs */
+	uint32_t version;		/* of `now` */
+	uint32_t needed;		/* of `place` */
+	uint64_t age;			/* periods since `needed` */
+	uint64_t dark;			/* periods without sparks */
+	bool in_force;			/* of the place, in the last period */
+	double hand[INTERP_NGENERATOR];	/* what a person has set */
+	uint32_t stands;		/* ... or is to set, a bit of each: it
+					 * stands */
+	uint32_t path;			/* io_outputs.path of these */
+};
+
+/** asking_init() - nothing is asked yet. */
+void asking_init(struct asking *a);
+
+/** asking_step() - once a period, behind the walk and before the outputs. */
+void asking_step(struct cycle *c, const struct io_inputs *in);
+
+/** asking_waits() - would there be sparks if the condition were in force? */
+bool asking_waits(const struct cycle *c);
+
+/** asking_hand() - a person must set something before the sparks.
+ *  Return: true if the machine is to stand for it. */
+bool asking_hand(struct cycle *c);
+
+/** asking_takes() - can field @field be @value? */
+bool asking_takes(const struct cycle *c, uint32_t field, double value);
+
+/** asking_off_us() - the off time that comes of asking for @off_us; NAN: it
+ *  cannot be asked for. */
+double asking_off_us(const struct cycle *c, double off_us);
+
+#endif /* RT_ASKING_H */

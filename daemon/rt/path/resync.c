@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* resync.c - from where the axes stand back to the path */
+#include "path/resync.h"
+
+#include "path/laws.h"
+#include "path/place.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NEAR_PULSES	5		/* an axis that holds its place moves
+					 * by less */
+#define MARGIN_MM	0.1		/* beyond sure_mm: an axis is not seen
+					 * to be off before it is NEAR_PULSES
+					 * off */
+#define POINTS_MS	1000		/* of the search, in a ms of a period */
+
+static int32_t plus(int32_t a, int32_t b)
+{
+	return (int32_t)((uint32_t)a + (uint32_t)b);
+}
+
+static int32_t minus(int32_t a, int32_t b)
+{
+	return (int32_t)((uint32_t)a - (uint32_t)b);
+}
+
+/* -- Where the axes stand -------------------------------------------------- */
+
+static bool any(const int32_t off[INTERP_NAXES])
+{
+	int32_t some = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		some |= off[i];
+	return some != 0;
+}
+
+void resync_set(struct resync *r, const int32_t off[INTERP_NAXES])
+{
+	memcpy(r->off, off, sizeof(r->off));
+	r->is_off = any(r->off);
+}
+
+bool resync_is_off(const struct cycle *c)
+{
+	return c->resync.is_off;
+}
+
+/* Are the axes without power, or held where they stand? */
+static bool stands(const struct cycle *c, const struct io_inputs *in)
+{
+	return in->axes_off && !in->starting && c->comp.begun &&
+	       (!c->out.enable || axes_awaits(&c->axes));
+}
+
+static void measure(struct cycle *c, const struct io_inputs *in)
+{
+	struct resync *r = &c->resync;
+
+	r->held = 0;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		r->off[i] = minus(in->stands_at[i],
+				  comp_pulses(&c->comp.axis[i]));
+		/* It may be stopped again on its way back. */
+		if (in->ran_on[i] > r->ran_on[i])
+			r->ran_on[i] = in->ran_on[i];
+	}
+	r->is_off = any(r->off);
+}
+
+/* An axis that is not there stands at 0, and is sent there. */
+static bool is_near(const struct cycle *c, const struct io_inputs *in)
+{
+	uint32_t far = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		far |= (uint32_t)minus(in->actual[i], c->comp.sent[i]) +
+		       NEAR_PULSES > 2 * NEAR_PULSES;
+	return !far;
+}
+
+static bool is_far(const struct cycle *c)
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (abs(c->resync.off[i]) > NEAR_PULSES)
+			return true;
+	return false;
+}
+
+void resync_settle(struct cycle *c)
+{
+	struct resync *r = &c->resync;
+
+	if (!resync_is_off(c))
+		return;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		struct comp_axis *a = &c->comp.axis[i];
+
+		c->out.target[i] = plus(c->out.target[i], r->off[i]);
+		a->place = plus(a->place, r->off[i]);
+	}
+	if (cycle_is_manual(c))
+		c->manual.from = plus(c->manual.from,
+				      r->off[c->manual.axis]);
+	memset(r->off, 0, sizeof(r->off));
+	r->is_off = false;
+	memset(r->ran_on, 0, sizeof(r->ran_on));
+	r->held = 0;
+	c->comp.stale = true;
+	c->comp.idle = false;
+	c->manual.used = true;
+}
+
+/* A program is compiled from where the machine stands.  Axes without power
+ * tremble by a pulse or two, which must not make it begin elsewhere. */
+void resync_look(struct cycle *c, const struct io_inputs *in)
+{
+	struct resync *r = &c->resync;
+
+	if (stands(c, in)) {
+		measure(c, in);
+		if (!c->loaded && is_far(c))
+			resync_settle(c);
+	} else if (c->loaded && !in->axes_off && !resync_is_off(c) &&
+		   is_near(c, in)) {
+		r->sure_mm = place_mm(c);
+		r->sure_beside = escape_is_out(&c->escape);
+	}
+}
+
+/* -- The search ------------------------------------------------------------ */
+
+void resync_search(struct cycle *c)
+{
+	const bool beside = escape_is_out(&c->escape);
+	struct resync *r = &c->resync;
+	/* An escape begins and ends where it leaves the path. */
+	const double sure_mm = beside == r->sure_beside ? r->sure_mm :
+			       interp_cursor_place_mm(&c->cursor);
+
+	r->held = r->seek = r->met = 0;
+	r->walks = r->begun = false;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		r->seek |= (uint32_t)(abs(r->off[i]) > NEAR_PULSES) << i;
+	if (r->seek == 0)
+		return;
+	r->toward = sure_mm > place_mm(c) ? 1 : -1;
+	r->until_mm = sure_mm + r->toward * MARGIN_MM;
+	r->scout = c->cursor;
+	r->beside = c->escape;
+	interp_cursor_aim(&r->scout, r->toward * 1e9);
+}
+
+/* Actions that were done are passed; no other is. */
+static bool step_on_path(const struct cycle *c, struct interp_cursor *at)
+{
+	for (int n = 0; n < INTERP_CROSS_MAX; n++) {
+		switch (interp_cursor_step(at)) {
+		case INTERP_MOVED:
+			return true;
+		case INTERP_AT_ACTION:
+			if (at->index + 1 > c->job.action_done ||
+			    interp_cursor_pass(at) == INTERP_BAD_SEGMENT)
+				return false;
+			interp_cursor_aim(at, 1e9);
+			break;
+		default:
+			return false;
+		}
+	}
+	return false;
+}
+
+static double scout_mm(const struct resync *r)
+{
+	const struct interp_cursor *at = &r->scout;
+	const double part = at->whole > 0 ?
+			    (double)at->measure / (double)at->whole : 0;
+
+	return at->seg.s_mm + at->seg.length_mm * part - r->beside.way_mm;
+}
+
+static bool scout_step(const struct cycle *c, struct resync *r)
+{
+	const bool on = escape_is_out(&r->beside) ?
+			escape_scout(&r->beside, r->toward) :
+			step_on_path(c, &r->scout);
+
+	return on && r->toward * (r->until_mm - scout_mm(r)) >= 0;
+}
+
+/* It is met where the path passes it.  If the path leads away from it, it was
+ * not blocked. */
+static void scout_look(const struct cycle *c, struct resync *r)
+{
+	const int32_t *pos = escape_is_out(&r->beside) ? r->beside.pos :
+							 r->scout.pos;
+
+	for (uint32_t m = r->seek; m; m &= m - 1) {
+		const int i = __builtin_ctz(m);
+		const int32_t off = r->off[i];
+		const int64_t left = (int64_t)c->out.target[i] + off -
+				     pos[i] - c->probe.shift[i];
+
+		if (left == 0 || (left < 0) != (off < 0)) {
+			r->met_mm[i] = scout_mm(r);
+			r->met |= 1u << i;
+			r->seek &= ~(1u << i);
+		} else if (llabs(left) > llabs(off) + NEAR_PULSES) {
+			r->seek &= ~(1u << i);
+		}
+	}
+}
+
+static enum resync_answer judge(const struct cycle *c)
+{
+	const struct resync *r = &c->resync;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (!(r->met >> i & 1) && llabs(r->off[i]) >
+		    (int64_t)c->config.resync.max[i] + r->ran_on[i] +
+		    NEAR_PULSES)
+			return RESYNC_TOO_FAR;
+	return RESYNC_DONE;
+}
+
+enum resync_answer resync_seek(struct cycle *c)
+{
+	struct resync *r = &c->resync;
+	int64_t n = c->config.period_ns * POINTS_MS / 1000000;
+
+	while (r->seek && n-- > 0) {
+		if (scout_step(c, r))
+			scout_look(c, r);
+		else
+			r->seek = 0;
+	}
+	return r->seek ? RESYNC_BUSY : judge(c);
+}
+
+/* -- The way --------------------------------------------------------------- */
+
+void resync_leave(struct cycle *c)
+{
+	struct resync *r = &c->resync;
+
+	r->held = r->met;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		r->hold[i] = plus(comp_pulses(&c->comp.axis[i]), r->off[i]);
+}
+
+/* Along the path, to the next place where an axis is met. */
+static enum resync_answer walk(struct cycle *c)
+{
+	struct resync *r = &c->resync;
+
+	if (r->walks && c->hold.moving)
+		return RESYNC_WALKS;
+	if (r->walks && fabs(place_mm(c) - c->hold.to_mm) > 2 * MOVER_ONTO_MM)
+		return RESYNC_GIVEN_UP;
+	for (uint32_t m = r->walks ? r->held : 0; m; m &= m - 1) {
+		const int i = __builtin_ctz(m);
+
+		if (r->toward * (r->met_mm[i] - c->hold.to_mm) <= 0)
+			r->held &= ~(1u << i);
+	}
+	r->walks = r->held != 0;
+	if (!r->walks)
+		return RESYNC_DONE;
+	c->hold.moving = true;
+	c->hold.to_mm = r->met_mm[__builtin_ctz(r->held)];
+	for (uint32_t m = r->held; m; m &= m - 1) {
+		const double met = r->met_mm[__builtin_ctz(m)];
+
+		if (r->toward * (met - c->hold.to_mm) < 0)
+			c->hold.to_mm = met;
+	}
+	return RESYNC_WALKS;
+}
+
+static void straight_begin(struct cycle *c)
+{
+	struct resync *r = &c->resync;
+
+	r->begun = true;
+	r->way_mm = r->gone_mm = 0;
+	mover_set(&r->mover, 0);
+	memcpy(r->from, r->off, sizeof(r->from));
+	for (int i = 0; i < INTERP_NAXES; i++)
+		r->way_mm = fmax(r->way_mm, fabs(r->off[i] *
+						 c->config.axis[i].pulse_mm));
+}
+
+/* No faster than the machine puts its pulses out. */
+static int32_t take_off(const struct cycle *c, int32_t off, int32_t want)
+{
+	const int32_t most = c->busy ? 0 : (int32_t)c->config.points_max;
+	const int32_t by = want - off;
+
+	return off + (by > most ? most : by < -most ? -most : by);
+}
+
+static enum resync_answer straight(struct cycle *c)
+{
+	struct resync *r = &c->resync;
+	const struct mover_limits l =
+		law_travel_limits(c, c->config.resync.v_mm_s);
+	double left;
+
+	if (!r->begun)
+		straight_begin(c);
+	r->gone_mm += mover_step(&r->mover, &l, r->way_mm - r->gone_mm);
+	left = fmax(r->way_mm - r->gone_mm, 0);
+	left = left > MOVER_ONTO_MM ? left / r->way_mm : 0;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		r->off[i] = take_off(c, r->off[i],
+				     (int32_t)llround(r->from[i] * left));
+	r->is_off = any(r->off);
+	if (resync_is_off(c) || r->mover.v_mm_s != 0)
+		return RESYNC_BUSY;
+	memset(r->ran_on, 0, sizeof(r->ran_on));
+	return RESYNC_DONE;
+}
+
+enum resync_answer resync_go(struct cycle *c)
+{
+	const enum resync_answer a = c->resync.held || c->resync.walks ?
+				     walk(c) : RESYNC_DONE;
+
+	return a == RESYNC_DONE ? straight(c) : a;
+}
+
+void resync_apply(struct cycle *c, int32_t target[INTERP_NAXES])
+{
+	struct resync *r = &c->resync;
+
+	if (!r->walks && !r->is_off)
+		return;
+	for (uint32_t m = r->walks ? r->held : 0; m; m &= m - 1) {
+		const int i = __builtin_ctz(m);
+
+		r->off[i] = minus(r->hold[i], target[i]);
+	}
+	r->is_off = any(r->off);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		target[i] = plus(target[i], r->off[i]);
+}

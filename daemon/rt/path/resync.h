@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * resync.h - from where the axes stand back to the path
+ *
+ * Axes without power stand where they were stopped, which may be beside the
+ * path: something blocked one of them while the others went on, they ran on in
+ * an e-stop, or a person pushed them.  While they have no power, the cycle
+ * sends them to where they stand.  So power moves nothing, and every motion
+ * begins there.
+ *
+ * Without a job, where an axis stands becomes its place.  With a job, the
+ * machine goes back to the path before it does what it was asked for:
+ *
+ * 1. An axis that was blocked stays where it stands.  The others go along the
+ *    path, the way that they came, to the place where the path has the blocked
+ *    axis where it stands.  So it is never sent on toward what blocked it.
+ * 2. What is then left to an axis goes off on a straight line, slowly.
+ *
+ * The place of step 1 is searched for between the place of the path and
+ * sure_mm, the last place where all axes were where they were sent.  An axis
+ * that the path only leads away from is not one that was blocked.  It is taken
+ * back by step 2, but not farther than resync_max.
+ *
+ * Units: pulses of the drives; mm along the path.  Threads: RT-safe.
+ */
+#ifndef RT_RESYNC_H
+#define RT_RESYNC_H
+
+#include "interp/cursor.h"
+#include "path/escape.h"
+#include "path/mover.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct cycle;
+struct io_inputs;
+
+struct resync_config {
+	int32_t max[INTERP_NAXES];	/* step 2 goes no farther */
+	double v_mm_s;			/* ... and no faster */
+};
+
+struct resync {
+	int32_t off[INTERP_NAXES];	/* from where the path wants it to where
+					 * it stands, or is on its way back */
+	bool is_off;			/* an axis is */
+	int32_t ran_on[INTERP_NAXES];	/* farther than max, by itself */
+	double sure_mm;
+	bool sure_beside;		/* ... was beside the path */
+	uint32_t held;			/* bit per axis that stays ... */
+	int32_t hold[INTERP_NAXES];	/* ... here */
+	double met_mm[INTERP_NAXES];	/* ... until the path is here */
+	bool walks;
+	/* The search: */
+	uint32_t seek, met;		/* bit per axis to be met, and met */
+	int toward;			/* +1 or -1, along the path */
+	double until_mm;
+	struct interp_cursor scout;
+	struct escape beside;
+	/* The straight line: */
+	bool begun;
+	int32_t from[INTERP_NAXES];
+	double way_mm, gone_mm;
+	struct mover mover;
+};
+
+enum resync_answer {
+	RESYNC_BUSY,			/* nothing else may move */
+	RESYNC_WALKS,			/* it moves along the path */
+	RESYNC_DONE,
+	RESYNC_TOO_FAR,			/* an axis was moved far by hand */
+	RESYNC_GIVEN_UP,		/* it was stopped on its way */
+};
+
+/** resync_set() - the axes stand @off from where the path wants them. */
+void resync_set(struct resync *r, const int32_t off[INTERP_NAXES]);
+
+/** resync_look() - before anything moves: where do the axes stand? */
+void resync_look(struct cycle *c, const struct io_inputs *in);
+
+/** resync_is_off() - is any axis beside the path? */
+bool resync_is_off(const struct cycle *c);
+
+/** resync_settle() - without a job: where the axes stand is their place. */
+void resync_settle(struct cycle *c);
+
+/** resync_search() - begin to search for the way; no axis moves. */
+void resync_search(struct cycle *c);
+
+/** resync_seek() - one period of the search: BUSY, DONE or TOO_FAR. */
+enum resync_answer resync_seek(struct cycle *c);
+
+/** resync_leave() - the axes have power: the way begins. */
+void resync_leave(struct cycle *c);
+
+/** resync_go() - one period of the way: not TOO_FAR. */
+enum resync_answer resync_go(struct cycle *c);
+
+/** resync_apply() - @target of the path becomes what the drives are sent. */
+void resync_apply(struct cycle *c, int32_t target[INTERP_NAXES]);
+
+#endif /* RT_RESYNC_H */

@@ -1,0 +1,398 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_asking.c - no spark before the condition of the place is in force
+ */
+#include "cycle_help.h"
+#include "seed.h"
+
+#define SETTLE		5
+#define DARK		7
+#define SLOW_MAX	40		/* periods until the generator has it */
+
+/* A generator that needs some periods for what it is asked. */
+struct slow {
+	double now[INTERP_NGENERATOR], next[INTERP_NGENERATOR];
+	uint32_t asked;
+	int left;			/* periods until next; -1: it has */
+	uint64_t seed;
+	int most;			/* periods that it needs */
+	int dark;			/* periods without sparks */
+	uint64_t sparks, changes;
+};
+
+static void give_steps(struct process_delivers *d, double step, double max)
+{
+	*d = (struct process_delivers) {
+		.there = true, .min = step, .max = max, .step = step
+	};
+}
+
+static struct cycle_config limited_config(bool answers)
+{
+	struct cycle_config k = usual_config();
+	struct asking_config *a = &k.asking;
+
+	a->limited = true;
+	a->answers = answers;
+	a->settle_cycles = SETTLE;
+	a->polarity_cycles = DARK;
+	give_steps(&a->field[INTERP_TECH_PEAK_A], 3, 21);
+	give_steps(&a->field[INTERP_TECH_ON_US], 1, 100);
+	give_steps(&a->field[INTERP_TECH_OFF_US], 1, 6000);
+	a->field[INTERP_TECH_POLARITY] = (struct process_delivers) {
+		.there = true, .n = 2, .value = { -1, 1 }
+	};
+	return k;
+}
+
+static struct interp_tech tech_of(double peak_a, double on_us, double polarity)
+{
+	struct interp_tech t;
+
+	interp_tech_clear(&t);
+	t.v[INTERP_TECH_PEAK_A] = peak_a;
+	t.v[INTERP_TECH_ON_US] = on_us;
+	t.v[INTERP_TECH_POLARITY] = polarity;
+	return t;
+}
+
+static void cut_in(struct interp_build *b, double z_mm, uint32_t number,
+		   const struct interp_tech *tech)
+{
+	const struct interp_build_word w = {
+		.line = 1, .feed_mm_s = 10, .tech = tech,
+		.cond_letter = 'C', .cond_number = number,
+	};
+	double end[INTERP_NAXES];
+	struct interp_diag d;
+
+	memcpy(end, interp_build_here(b), sizeof(end));
+	end[INTERP_Z] = z_mm;
+	assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+}
+
+/* Cuts of @way_mm each, and conditions that differ in all, or in part. */
+static void rig_conds(struct rig *r, const struct cycle_config *k,
+		      double way_mm, int n)
+{
+	const struct interp_tech t[] = {
+		tech_of(6, 8, NAN), tech_of(15, 20, -1), tech_of(15, 40, -1),
+		tech_of(7, NAN, 1), tech_of(21, 8, 1),
+	};
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+
+	for (int i = 0; i < n; i++)
+		cut_in(b, -way_mm * (i + 1), (uint32_t)(i % 5), &t[i % 5]);
+	rig_load(r, b, k);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+}
+
+static bool same(double a, double b)
+{
+	return a == b || (isnan(a) && isnan(b));
+}
+
+/* What the place wants, as the generator can do it. */
+static double wanted(const struct rig *r, int i)
+{
+	const struct interp_cond *c =
+		&r->c.cursor.p.conds[r->c.cursor.seg.cond];
+
+	return process_nearest(&r->c.config.asking.field[i], i, c->tech.v[i]);
+}
+
+static void check_spark(const struct rig *r, struct slow *g)
+{
+	g->dark = r->out.power ? 0 : g->dark + 1;
+	if (!r->out.power)
+		return;
+	g->sparks++;
+	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+		assert_true(same(r->out.pulse[i], wanted(r, i)));
+		assert_true(same(g->now[i], wanted(r, i)));
+	}
+}
+
+/* The generator hears this period's outputs, and has some of them by now. */
+static void generate(struct rig *r, struct slow *g)
+{
+	if (r->out.asked != g->asked) {
+		assert_true(g->dark >= 1 + (g->sparks > 0));
+		if ((r->out.pulse[INTERP_TECH_POLARITY] < 0) !=
+		    (g->next[INTERP_TECH_POLARITY] < 0))
+			assert_true(g->dark >= DARK);
+		g->asked = r->out.asked;
+		memcpy(g->next, r->out.pulse, sizeof(g->next));
+		g->left = (int)(rnd(&g->seed) % (uint64_t)(g->most + 1));
+		g->changes++;
+	}
+	if (g->left == 0) {
+		memcpy(g->now, g->next, sizeof(g->now));
+		r->in.generator.in_force = g->asked;
+	}
+	g->left -= g->left >= 0;
+}
+
+static struct slow slow_of(uint64_t seed, int most)
+{
+	struct slow g = { .seed = seed, .most = most, .left = -1 };
+
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		g.now[i] = g.next[i] = (double)NAN;
+	return g;
+}
+
+/* Where it waits for the generator, there is no voltage on the gap. */
+static void period(struct rig *r, struct slow *g, double gap_v)
+{
+	step(r, asking_waits(&r->c) ? 0 : gap_v);
+	check_spark(r, g);
+	generate(r, g);
+}
+
+/* A gap that is mostly good, and an operator who holds and goes back. */
+static void random_period(struct rig *r, struct slow *g)
+{
+	static const double volts[] = {
+		SPARKING_V, OPEN_V, NARROW_V, SHORTED_V
+	};
+	const uint64_t x = rnd(&g->seed) % 1000;
+	const bool stands = r->c.state == STATE_HOLD && !r->c.hold.moving;
+
+	if (x < 3)
+		tell(r, CYCLE_HOLD);
+	else if (x < 6 && stands)
+		tell_mm(r, CYCLE_RETRACT, 0.3);
+	else if (x < 60 && stands)
+		tell(r, CYCLE_START);
+	else if (r->c.state == STATE_FAULT)
+		tell(r, CYCLE_RESET);
+	period(r, g, volts[x < 900 ? x % 2 : 2 + x % 2]);
+}
+
+static void random_job(uint64_t seed, bool answers, int periods)
+{
+	struct cycle_config k = limited_config(answers);
+	struct slow g = slow_of(seed, answers ? SLOW_MAX : SETTLE);
+	struct rig r;
+
+	k.jump.height_mm = rnd(&g.seed) % 2 ? 0.4 : 0;
+	k.jump.every.cycles = 60;
+	rig_conds(&r, &k, 0.1 + 0.01 * (double)(rnd(&g.seed) % 20), 400);
+	for (int i = 0; i < periods && r.c.loaded; i++)
+		random_period(&r, &g);
+	assert_true(g.sparks > 0 && g.changes > 3);
+	rig_free(&r);
+}
+
+static void never_a_spark_with_another_condition_than_the_places(void **state)
+{
+	const char *text = getenv("EDM_RUNS");
+	const int rounds = text ? atoi(text) : SEED_ROUNDS(200);
+	uint64_t seed = seed_take();
+
+	(void)state;
+	for (int i = 0; i < rounds; i++)
+		random_job(rnd(&seed), i % 2, 5000);
+}
+
+/* Periods from the change to the first spark. */
+static int wait_of(bool answers, int most)
+{
+	struct cycle_config k = limited_config(answers);
+	struct slow g = slow_of(1, most);
+	struct rig r;
+	int n = 0;
+
+	k.gap.retract_limit_mm = 2;
+	rig_conds(&r, &k, 1, 3);
+	while (r.c.cursor.seg.cond == 0 || !r.out.power)
+		period(&r, &g, SPARKING_V + 5);
+	while (r.out.cond_number == 0)
+		period(&r, &g, SPARKING_V + 5);
+	/* From C1 to C2 the polarity stays. */
+	while (r.out.cond_number == 1)
+		period(&r, &g, SPARKING_V + 5);
+	assert_false(r.out.power);
+	for (; !r.out.power; n++)
+		period(&r, &g, SPARKING_V + 5);
+	rig_free(&r);
+	return n;
+}
+
+static void a_change_takes_the_settling_and_two_periods_at_most(void **state)
+{
+	(void)state;
+	assert_in_range(wait_of(false, 0), SETTLE, SETTLE + 2);
+	assert_in_range(wait_of(true, 0), 1, 2);
+}
+
+static void a_jump_over_a_change_asks_for_nothing(void **state)
+{
+	struct cycle_config k = limited_config(false);
+	struct slow g = slow_of(1, 0);
+	struct rig r;
+	uint32_t asked;
+
+	(void)state;
+	k.jump.height_mm = 1.5;
+	k.jump.every.cycles = 300;
+	rig_conds(&r, &k, 1, 3);
+	while (place(&r) < 1.2)
+		period(&r, &g, SPARKING_V + 5);
+	while (r.c.state != STATE_JUMP)
+		period(&r, &g, SPARKING_V);
+	asked = r.out.asked;
+	while (r.c.state == STATE_JUMP) {
+		period(&r, &g, OPEN_V);
+		assert_int_equal(r.out.asked, asked);
+	}
+	period(&r, &g, OPEN_V);
+	assert_true(r.out.power);
+	rig_free(&r);
+}
+
+static void one_that_never_has_it_never_gets_a_spark(void **state)
+{
+	struct cycle_config k = limited_config(true);
+	struct rig r;
+
+	(void)state;
+	rig_conds(&r, &k, 1, 2);
+	for (int i = 0; i < 3000; i++) {
+		step(&r, SPARKING_V);
+		assert_false(r.out.power);
+	}
+	assert_int_equal(r.c.state, STATE_APPROACH);
+	assert_int_equal(r.c.fault.latched, 0);
+	r.in.generator.trouble = true;
+	step(&r, SPARKING_V);
+	assert_int_equal(r.c.fault.first, FAULT_GENERATOR);
+	rig_free(&r);
+}
+
+static void trouble_ends_the_sparks_in_its_period(void **state)
+{
+	struct cycle_config k = limited_config(false);
+	struct slow g = slow_of(1, 0);
+	struct rig r;
+
+	(void)state;
+	rig_conds(&r, &k, 1, 2);
+	while (!r.out.power)
+		period(&r, &g, SPARKING_V);
+	r.in.generator.trouble = true;
+	step(&r, SPARKING_V);
+	assert_false(r.out.power);
+	assert_int_equal(r.c.fault.first, FAULT_GENERATOR);
+	rig_free(&r);
+}
+
+static void what_a_person_sets_is_asked_for_at_each_change(void **state)
+{
+	struct cycle_config k = limited_config(false);
+	struct process_delivers *on = &k.asking.field[INTERP_TECH_ON_US];
+	struct slow g = slow_of(1, 0);
+	struct rig r;
+	int stands = 0;
+
+	(void)state;
+	on->by_hand = true;
+	rig_conds(&r, &k, 0.5, 3);
+	while (r.c.loaded) {
+		period(&r, &g, SPARKING_V + 5);
+		if (r.c.state != STATE_HOLD || r.c.mover.v_mm_s != 0)
+			continue;
+		assert_int_equal(r.c.asking.stands, 1u << INTERP_TECH_ON_US);
+		assert_int_equal(r.out.cond_number, stands);
+		stands++;
+		for (int i = 0; i < 50; i++) {
+			period(&r, &g, SPARKING_V);
+			assert_false(r.out.power);
+		}
+		assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	}
+	assert_int_equal(stands, 3);
+	assert_int_equal(r.c.outcome, OUTCOME_DONE);
+	rig_free(&r);
+}
+
+static void a_set_that_does_not_reach_the_generator_is_refused(void **state)
+{
+	struct cycle_config k = limited_config(false);
+	struct rig r;
+
+	(void)state;
+	rig_conds(&r, &k, 1, 2);
+	while (!r.out.power)
+		step(&r, SPARKING_V);
+	assert_int_equal(conditions_set(&r.c, INTERP_TECH_PEAK_A, 22),
+			 CONDITIONS_BAD);
+	assert_int_equal(conditions_set(&r.c, INTERP_TECH_IGNITION_V, 180),
+			 CONDITIONS_BAD);
+	assert_int_equal(conditions_set(&r.c, INTERP_TECH_PEAK_A, 20),
+			 CONDITIONS_DONE);
+	steps(&r, SPARKING_V, 2);
+	assert_false(r.out.power);
+	assert_true(r.out.pulse[INTERP_TECH_PEAK_A] == 18);
+	rig_free(&r);
+}
+
+/* 20 us and up to three times as much; the generator ends at 40. */
+static void steps_against_arcs_are_those_that_reach_the_generator(void **state)
+{
+	struct cycle_config k = limited_config(false);
+	struct rig r;
+
+	(void)state;
+	k.gap.off_us = 20;
+	k.gap.arcing_off_max = 3;
+	k.asking.field[INTERP_TECH_OFF_US].max = 40;
+	rig_conds(&r, &k, 1, 2);
+	r.c.arcing.rung = ARCING_OFF_FIRST;
+	assert_near(arcing_off_us(&r.c), 30, 1e-9);
+	r.c.arcing.rung = ARCING_JUMP;
+	assert_near(arcing_off_us(&r.c), 40, 1e-9);
+	r.c.config.asking.field[INTERP_TECH_OFF_US].by_hand = true;
+	assert_true(isnan(arcing_off_us(&r.c)));
+	rig_free(&r);
+}
+
+static void the_nearest_current_is_not_above_what_was_asked(void **state)
+{
+	const struct process_delivers list = {
+		.there = true, .n = 4, .value = { 16, 2, 8, 4 }
+	};
+	struct process_delivers steps;
+	char text[64];
+
+	(void)state;
+	give_steps(&steps, 3, 21);
+	assert_true(process_nearest(&steps, INTERP_TECH_PEAK_A, 8.9) == 6);
+	assert_true(process_nearest(&steps, INTERP_TECH_ON_US, 8) == 9);
+	assert_true(process_nearest(&steps, INTERP_TECH_PEAK_A, 9) == 9);
+	assert_true(isnan(process_nearest(&steps, INTERP_TECH_PEAK_A, 2.9)));
+	assert_true(isnan(process_nearest(&steps, INTERP_TECH_PEAK_A, 22)));
+	assert_true(process_nearest(&list, INTERP_TECH_PEAK_A, 7) == 4);
+	assert_true(process_nearest(&list, INTERP_TECH_ON_US, 7) == 8);
+	assert_true(isnan(process_nearest(&list, INTERP_TECH_ON_US, 17)));
+	process_range_text(&list, INTERP_TECH_ON_US, text, sizeof(text));
+	assert_string_equal(text, "2 4 8 16 us");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(never_a_spark_with_another_condition_than_the_places),
+		cmocka_unit_test(a_change_takes_the_settling_and_two_periods_at_most),
+		cmocka_unit_test(a_jump_over_a_change_asks_for_nothing),
+		cmocka_unit_test(one_that_never_has_it_never_gets_a_spark),
+		cmocka_unit_test(trouble_ends_the_sparks_in_its_period),
+		cmocka_unit_test(what_a_person_sets_is_asked_for_at_each_change),
+		cmocka_unit_test(a_set_that_does_not_reach_the_generator_is_refused),
+		cmocka_unit_test(steps_against_arcs_are_those_that_reach_the_generator),
+		cmocka_unit_test(the_nearest_current_is_not_above_what_was_asked),
+	};
+
+	return cmocka_run_group_tests_name("rt/asking", tests, NULL, NULL);
+}

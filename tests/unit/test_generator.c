@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * test_generator.c - what is asked for as frames, what is told, and what of a
+ * condition reaches the generator
+ */
+#include "config_help.h"
+
+#include "generator_own.h"
+
+#include <errno.h>
+#include <linux/can.h>
+#include <math.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+struct rig {
+	struct machine_config c;
+	struct io_machine m;
+	struct io_inputs in;
+	struct io_outputs out;
+	int fd;
+	struct can_frame usual, own;	/* the last ones */
+	uint32_t frames;
+};
+
+static const char machine[] =
+	"[machine]\nbackend = null\nperiod_us = 1000\n"
+	"[generator]\ninterface = can\ncan_id = 1009\n"
+	"ignition_v = can 1010 byte 0 bits 12 scale 0.25\n"
+	"iso = can 1010 byte 1 bit 7\nsense = can 1010 byte 1 bit 6\n"
+	"silent_ms = 20\nconfirm_s = 0.05\n";
+
+static const char tells[] =
+	"told_peak_a = can 1011 byte 0 bits 8 scale 0.5\n"
+	"told_polarity = can 1011 byte 1 bit 0\n";
+
+static void make(struct rig *r, const char *more)
+{
+	struct interp_diag d;
+	char text[1024];
+	int fd[2];
+
+	memset(r, 0, sizeof(*r));
+	snprintf(text, sizeof(text), "%s%s", machine, more);
+	assert_int_equal(read_text(text, &r->c, &d), 0);
+	assert_int_equal(io_null_open(&r->m, &r->c, &d), 0);
+	assert_int_equal(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0,
+				    fd), 0);
+	assert_non_null(generator_attach(&r->m, &r->c, fd[0]));
+	r->fd = fd[1];
+	io_pulse_own(&r->out);
+}
+
+static void take_frames(struct rig *r)
+{
+	struct can_frame f;
+
+	while (read(r->fd, &f, sizeof(f)) == sizeof(f)) {
+		*(f.can_id == 1009 ? &r->usual : &r->own) = f;
+		r->frames++;
+	}
+}
+
+static void unmake(struct rig *r)
+{
+	r->m.close(r->m.self);
+	take_frames(r);
+	assert_int_equal(r->usual.data[0], 0);
+	close(r->fd);
+}
+
+static void tell(struct rig *r, uint8_t halves, bool negative)
+{
+	struct can_frame f = { .can_id = 1011, .can_dlc = 2 };
+
+	f.data[0] = halves;
+	f.data[1] = negative;
+	assert_int_equal(write(r->fd, &f, sizeof(f)), sizeof(f));
+}
+
+static void period(struct rig *r)
+{
+	r->m.read(r->m.self, &r->in);
+	r->m.write(r->m.self, &r->out);
+	r->out.reset = false;
+	take_frames(r);
+}
+
+static void ask(struct rig *r, double peak_a)
+{
+	r->out.pulse[INTERP_TECH_PEAK_A] = peak_a;
+	r->out.asked++;
+}
+
+static bool log_has(struct rig *r, const char *text)
+{
+	char line[160];
+	bool any = false;
+
+	while (r->m.note(r->m.self, line, sizeof(line)))
+		any = any || strstr(line, text);
+	return any;
+}
+
+/* 8 us, 20 us, 6 A, 180 V of the published experiment. */
+static void a_condition_reaches_it_whole(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r, "");
+	ask(&r, 6);
+	r.out.pulse[INTERP_TECH_ON_US] = 8;
+	r.out.pulse[INTERP_TECH_OFF_US] = 20;
+	r.out.pulse[INTERP_TECH_IGNITION_V] = 180;
+	r.out.pulse[INTERP_TECH_POLARITY] = -1;
+	r.out.power = r.out.pump = true;
+	period(&r);
+	assert_int_equal(r.usual.can_dlc, 8);
+	assert_int_equal(r.usual.data[0], 7);
+	assert_int_equal(can_get(r.usual.data + 2, 2), 60);
+	assert_int_equal(can_get(r.usual.data + 4, 2), 80);
+	assert_int_equal(can_get(r.usual.data + 6, 2), 200);
+	assert_int_equal(r.own.can_dlc, 2);
+	assert_int_equal(can_get(r.own.data, 2), 720);
+	r.out.pulse[INTERP_TECH_ISO] = 1;
+	r.out.sense = true;
+	r.out.pulse[INTERP_TECH_IGNITION_V] = NAN;
+	r.out.pulse[INTERP_TECH_OFF_US] = NAN;
+	period(&r);
+	assert_int_equal(can_get(r.own.data, 2), 0xcfff);
+	assert_int_equal(can_get(r.usual.data + 6, 2), 0xffff);
+	unmake(&r);
+}
+
+static void what_changes_is_sent_at_once_and_all_of_it_again(void **state)
+{
+	struct rig r;
+	uint8_t count;
+
+	(void)state;
+	make(&r, "");
+	period(&r);
+	assert_int_equal(r.frames, 2);
+	count = r.usual.data[1];
+	r.out.power = true;
+	period(&r);
+	assert_int_equal(r.frames, 3);
+	assert_int_equal(r.usual.data[0], 1);
+	for (int i = 0; i < 20; i++)
+		period(&r);
+	assert_in_range(r.frames, 3 + 18, 3 + 20);
+	assert_in_range((uint8_t)(r.usual.data[1] - count), 10, 12);
+	unmake(&r);
+}
+
+static void what_it_tells_is_in_force_when_it_agrees(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r, tells);
+	ask(&r, 6);
+	for (int i = 0; i < 10; i++) {
+		tell(&r, 8, false);
+		period(&r);
+		assert_int_not_equal(r.in.generator.in_force, r.out.asked);
+	}
+	tell(&r, 12, false);
+	period(&r);
+	assert_int_equal(r.in.generator.in_force, r.out.asked);
+	assert_false(r.in.generator.trouble);
+	unmake(&r);
+}
+
+static void one_that_lies_is_trouble_in_its_period(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r, tells);
+	ask(&r, 6);
+	r.out.power = true;
+	period(&r);
+	tell(&r, 12, false);
+	period(&r);
+	assert_int_equal(r.usual.data[0], 1);
+	tell(&r, 24, false);
+	period(&r);
+	assert_true(r.in.generator.trouble);
+	assert_int_equal(r.usual.data[0], 0);
+	assert_true(log_has(&r, "peak_a was in force and is no more: asked 6, "
+				"told 12"));
+	tell(&r, 12, false);
+	period(&r);
+	assert_true(r.in.generator.trouble);
+	r.out.reset = true;
+	tell(&r, 12, false);
+	period(&r);
+	tell(&r, 12, false);
+	period(&r);
+	assert_false(r.in.generator.trouble);
+	unmake(&r);
+}
+
+static void one_that_refuses_is_trouble_in_confirm_s(void **state)
+{
+	struct rig r;
+	int n = 0;
+
+	(void)state;
+	make(&r, tells);
+	tell(&r, 12, false);
+	period(&r);
+	ask(&r, 9);
+	while (!r.in.generator.trouble && n++ < 100) {
+		tell(&r, 12, false);
+		period(&r);
+	}
+	assert_in_range(n, 50, 53);
+	assert_true(log_has(&r, "peak_a is not in force in confirm_s: asked 9, "
+				"told 6"));
+	unmake(&r);
+}
+
+static void one_that_is_silent_is_trouble_in_silent_ms(void **state)
+{
+	struct rig r;
+	int n = 0;
+
+	(void)state;
+	make(&r, tells);
+	ask(&r, 6);
+	period(&r);
+	tell(&r, 12, false);
+	period(&r);
+	while (!r.in.generator.trouble && n++ < 100)
+		period(&r);
+	assert_in_range(n, 19, 22);
+	assert_true(log_has(&r, "it does not tell its peak_a any more"));
+	unmake(&r);
+}
+
+/* It comes back with its own settings, another polarity among them. */
+static void one_that_restarts_is_trouble(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r, tells);
+	ask(&r, 6);
+	r.out.pulse[INTERP_TECH_POLARITY] = -1;
+	period(&r);
+	tell(&r, 12, true);
+	period(&r);
+	assert_false(r.in.generator.trouble);
+	tell(&r, 12, false);
+	period(&r);
+	assert_true(r.in.generator.trouble);
+	assert_true(log_has(&r, "polarity was in force and is no more: asked "
+				"-1, told 1"));
+	unmake(&r);
+}
+
+/* -- What of a condition is delivered -------------------------------------- */
+
+#define GAP_LINES_TEXT	"[machine]\nbackend = gpio\nperiod_us = 200\n" \
+	"[axis.A]\npresent = no\n[axis.B]\npresent = no\n" \
+	"[axis.C]\npresent = no\n[axis.U]\npresent = no\n" \
+	"[axis.V]\npresent = no\n[axis.X]\nv_max_mm_s = 1\n" \
+	"[axis.Y]\nv_max_mm_s = 1\n[axis.Z]\nv_max_mm_s = 1\n" \
+	"[jump]\nv_max_mm_s = 1\n[gap]\nsource = lines\n[gpio]\n" \
+	"step_X = 1\ndir_X = 2\nstep_Y = 3\ndir_Y = 4\nstep_Z = 5\n" \
+	"dir_Z = 6\ngap_open = 7\ngap_short = 8\n"
+
+/* Each field with its value; "": it is taken. */
+static const struct {
+	const char *more;
+	enum interp_tech_id field;
+	double value;
+	const char *found, *wanted;
+} cells[] = {
+	{ "", INTERP_TECH_PEAK_A, 6, "C1: peak_a 6 A does not reach",
+	  "by_hand = peak_a" },
+	{ "", INTERP_TECH_ON_US, 8, "on_us 8 us", "by_hand = on_us" },
+	{ "", INTERP_TECH_OFF_US, 20, "off_us 20 us", "[generator] off_us" },
+	{ "", INTERP_TECH_IGNITION_V, 180, "ignition_v 180 V", "" },
+	{ "", INTERP_TECH_ISO, 1, "iso 1", "" },
+	{ "", INTERP_TECH_POLARITY, -1, "polarity -1", "" },
+	{ "", INTERP_TECH_POLARITY, 1, "", "" },
+	{ "", INTERP_TECH_SERVO_V, 20, "", "" },
+	{ "[generator]\nby_hand = peak_a\n", INTERP_TECH_PEAK_A, 6, "", "" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n",
+	  INTERP_TECH_PEAK_A, 6, "", "" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n",
+	  INTERP_TECH_POLARITY, -1, "", "" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n",
+	  INTERP_TECH_OFF_US, 6553.4, "", "" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n",
+	  INTERP_TECH_OFF_US, 6554, "C1: off_us 6554 us", "0.1 to 6553.4 us" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n",
+	  INTERP_TECH_IGNITION_V, 180, "ignition_v 180 V", "" },
+	{ "[generator]\ninterface = lines\n"
+	  "peak_a = lines 20 21 26 weights 3 6 12\n",
+	  INTERP_TECH_PEAK_A, 7, "", "" },
+	{ "[generator]\ninterface = lines\n"
+	  "peak_a = lines 20 21 26 weights 3 6 12\n",
+	  INTERP_TECH_PEAK_A, 2, "peak_a 2 A", "3 6 9 12 15 18 21 A" },
+	{ "[generator]\ninterface = lines\non_us = lines 20 21 codes 2 4 8\n",
+	  INTERP_TECH_ON_US, 20, "on_us 20 us", "2 4 8 us" },
+	{ "[generator]\ninterface = lines\npolarity = line 20\n",
+	  INTERP_TECH_POLARITY, -1, "", "" },
+};
+
+static void each_field_reaches_it_or_is_refused(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof(cells) / sizeof(cells[0]); i++) {
+		struct machine_config c;
+		struct interp_diag d = { .line = 0 };
+		struct interp_tech t;
+		char text[1200];
+
+		snprintf(text, sizeof(text), "%s%s", GAP_LINES_TEXT,
+			 cells[i].more);
+		assert_int_equal(read_text(text, &c, &d), 0);
+		interp_tech_clear(&t);
+		t.v[cells[i].field] = cells[i].value;
+		assert_int_equal(config_generator_takes(&c, &t, "C1", &d),
+				 *cells[i].found ? -EINVAL : 0);
+		assert_non_null(strstr(d.found, cells[i].found));
+		assert_non_null(strstr(d.wanted, cells[i].wanted));
+	}
+}
+
+static void lines_have_the_code_of_the_value(void **state)
+{
+	struct machine_config c;
+	struct interp_diag d;
+	struct config_way w;
+
+	(void)state;
+	assert_int_equal(read_text(GAP_LINES_TEXT "[generator]\n"
+		"interface = lines\npeak_a = lines 20 !21 26 weights 3 6 12\n"
+		"on_us = lines 22 23 codes 2 4 8 16\n", &c, &d), 0);
+	config_way(&c, INTERP_TECH_PEAK_A, false, &w);
+	assert_int_equal(generator_code(&w, 15), 5);
+	assert_int_equal(generator_code(&w, NAN), 0);
+	assert_true(w.line[1].inverted);
+	config_way(&c, INTERP_TECH_ON_US, false, &w);
+	assert_int_equal(generator_code(&w, 8), 2);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_condition_reaches_it_whole),
+		cmocka_unit_test(what_changes_is_sent_at_once_and_all_of_it_again),
+		cmocka_unit_test(what_it_tells_is_in_force_when_it_agrees),
+		cmocka_unit_test(one_that_lies_is_trouble_in_its_period),
+		cmocka_unit_test(one_that_refuses_is_trouble_in_confirm_s),
+		cmocka_unit_test(one_that_is_silent_is_trouble_in_silent_ms),
+		cmocka_unit_test(one_that_restarts_is_trouble),
+		cmocka_unit_test(each_field_reaches_it_or_is_refused),
+		cmocka_unit_test(lines_have_the_code_of_the_value),
+	};
+
+	return cmocka_run_group_tests_name("io/generator", tests, make_file,
+					   remove_file);
+}
