@@ -8,7 +8,6 @@
 #include "path/builder.h"
 #include "path/build_arc.h"
 #include "path/build_bits.h"
-#include "path/build_limits.h"
 #include "path/build_pair.h"
 #include "path/build_rule.h"
 #include "pulse/pulse.h"
@@ -124,7 +123,7 @@ static int node_add(struct interp_build *b)
 	const size_t n = t->n;
 	int64_t *at;
 
-	if (t->room - n < naxes && build_seen_room(b, t, naxes) < 0)
+	if (t->room - n < naxes && build_table_room(t, naxes) < 0)
 		return -ENOMEM;
 	/* There may be no axis yet, and then no table either. */
 	at = nodes_of(b);
@@ -141,7 +140,6 @@ static int column_add(struct interp_build *b, uint32_t axis)
 	const uint32_t from = b->naxes, to = b->naxes + 1;
 	int64_t *at;
 
-	build_limits_stop(b);
 	if (build_table_room(&b->nodes, rows * to - b->nodes.n) < 0)
 		return -ENOMEM;
 	at = nodes_of(b);
@@ -215,7 +213,6 @@ void interp_build_destroy(struct interp_build *b)
 {
 	if (!b)
 		return;
-	build_limits_stop(b);
 	build_table_free(&b->segs);
 	free(b->nodes.at);
 	free(b->arcs.at);

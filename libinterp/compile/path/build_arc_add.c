@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* build_arc_add.c - adds an arc as a segment, and its plan to the tables */
+#include "path/builder.h"
 #include "path/build_arc.h"
 #include "path/build_edge.h"
-#include "path/build_limits.h"
 #include "pulse/strategy.h"
 
 #include <errno.h>
@@ -36,7 +36,7 @@ int build_arc_add(struct interp_build *b, const struct build_arc *p,
 	if (build_columns(b, p->moved) < 0)
 		return -ENOMEM;
 	seg.arg = (uint32_t)b->arcs.n;
-	arc = build_seen_add(b, &b->arcs);
+	arc = build_table_add(&b->arcs);
 	if (!arc)
 		return -ENOMEM;
 	*arc = p->arc;

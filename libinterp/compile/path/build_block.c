@@ -5,7 +5,9 @@
  * Most of a program are its segments.  So the memory of their table becomes
  * the block, and only the other tables are copied.
  */
-#include "path/build_limits.h"
+
+#include "path/builder.h"
+#include "interp/limits.h"
 
 #include "both.h"
 
@@ -161,6 +163,32 @@ static void write_tables(struct interp_build *b,
 	move_table(base + h->runs_at, &b->runs, threads);
 }
 
+/* A shorter program is done before a thread has begun. */
+#define LONG		8192		/* segments */
+
+static uint32_t threads_of(const struct interp_build *b)
+{
+	return b->segs.n < LONG ? 1 :
+	       b->o.threads ? b->o.threads : both_processors();
+}
+
+static struct interp_limits limits_of(const struct interp_build *b)
+{
+	const struct interp_build_options *o = &b->o;
+
+	return (struct interp_limits) {
+		.machine = o->machine,
+		.corner_mm = o->corner_mm > 0 ? o->corner_mm :
+						INTERP_CORNER_MM,
+		.tolerance_mm = o->tolerance_mm > 0 ? o->tolerance_mm :
+						      INTERP_TOLERANCE_MM,
+		.rotary_radius_mm = o->rotary_radius_mm > 0 ?
+				    o->rotary_radius_mm : INTERP_ROTARY_MM,
+		.points_per_s = o->points_per_s > 0 ? o->points_per_s :
+						      INFINITY,
+	};
+}
+
 void *interp_build_take(struct interp_build *b,
 			const struct interp_build_about *about,
 			size_t *ret_bytes)
@@ -168,13 +196,13 @@ void *interp_build_take(struct interp_build *b,
 	struct interp_program_head h = layout(b);
 	const size_t n = b->segs.n;
 	const bool ended = ends(b);
-	const uint32_t threads = build_threads(b);
+	const uint32_t threads = threads_of(b);
+	const struct interp_limits l = limits_of(b);
 	struct interp_program p;
 	struct interp_seg *segs;
 	char *base;
 
 	write_head(b, &h, about);
-	build_limits_await(b);
 	if (build_table_size(&b->segs, h.bytes) < 0)
 		return NULL;
 	segs = b->segs.at;
@@ -189,9 +217,12 @@ void *interp_build_take(struct interp_build *b,
 		};
 	}
 	write_tables(b, &h, base, threads);
-	if (interp_program_map(&p, base, h.bytes) == 0)
-		build_limits_write(b, &p, segs, (void *)(base + h.bends_at),
-				   threads);
+	if (interp_program_map(&p, base, h.bytes) == 0 &&
+	    interp_limits_write(&l, &p, segs, (void *)(base + h.bends_at)) < 0) {
+		if (!b->o.memory)
+			free(base);
+		return NULL;
+	}
 	*ret_bytes = h.bytes;
 	return base;
 }

@@ -191,7 +191,6 @@ static int piece_add(struct curve_plan *p, double to)
 		return err;
 	step.seg.ticks = p->walk.places * p->turns;
 	step.feed_max_mm_s = build_curve_feed(p);
-	build_curve_along(p, step.feed_max_mm_s, &piece);
 	step.seg.arg = (uint32_t)p->b->pieces.n;
 	stored = build_table_add(&p->b->pieces);
 	if (!stored)

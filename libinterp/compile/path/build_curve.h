@@ -28,8 +28,7 @@ struct curve_seen {
 	double bend;			/* curvature; HUGE_VAL: a cusp */
 	double counted;			/* mm of the axes that count, in one of
 					 * the length */
-	double d[3][INTERP_NAXES];	/* |x_s|, |x_ss| and |x_sss| of each
-					 * column */
+	double d[INTERP_NAXES];		/* |x_s| of each column */
 };
 
 /* The feed that the axes allow at @u, the length by parameter there, how far
@@ -40,8 +39,6 @@ struct curve_look {
 };
 
 #define BUILD_SLOWEST_BESIDE	0.05	/* of the slowest, at a cusp */
-#define BUILD_LOOKED		0.995	/* of what neighbouring looks allow,
-					 * between them */
 
 /* Of what the axes can do along a curve, what is kept for going along it.  The
  * rest is for following it. */
@@ -157,10 +154,6 @@ double build_curve_feed(const struct curve_plan *p);
 /** build_curve_rate() - the most pulses that one of its axes goes in a mm. */
 double build_curve_rate(const struct curve_plan *p);
 
-/** build_curve_along() - how fast to speed up along it, at @v_mm_s at most. */
-void build_curve_along(const struct curve_plan *p, double v_mm_s,
-		       struct interp_piece *ret);
-
 /* build_curve_share.c: */
 
 /**
@@ -181,9 +174,5 @@ int build_share_choose(struct curve_plan *p);
 double build_share_mm_s(const struct curve_plan *p,
 			const struct interp_nurbs_way *w,
 			const struct curve_share *share);
-
-/** build_share_along() - as build_curve_along(), where there is a share. */
-void build_share_along(const struct curve_plan *p, double v_mm_s,
-		       struct interp_piece *ret);
 
 #endif /* PATH_BUILD_CURVE_H */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * build_curve_feed.c - how fast a curve may be followed, and what that leaves
- * for speeding up along it
+ * build_curve_feed.c - how fast a curve may be followed
  */
 #include "path/build_curve.h"
 #include "path/builder.h"
@@ -15,15 +14,10 @@
 					 * change by no more */
 #define NEAR_HALVINGS	10
 
-/* Shares of an axis's acceleration: to follow the curve, and to go along it. */
+/* The share of an axis's acceleration that follows the curve. */
 static double across_part(const struct curve_plan *p, uint32_t k)
 {
 	return k < p->curve.counted ? INTERP_BEND_ACROSS : INTERP_BESIDE_ACROSS;
-}
-
-static double along_part(const struct curve_plan *p, uint32_t k)
-{
-	return k < p->curve.counted ? INTERP_BEND_ALONG : INTERP_BESIDE_ALONG;
 }
 
 void build_curve_limit(struct curve_plan *p)
@@ -82,9 +76,8 @@ static void learn(struct curve_plan *p, const struct interp_nurbs_way *w)
 	for (uint32_t k = 0; !w->cusp && k < p->curve.counted; k++)
 		counted += w->d[0][k] * w->d[0][k];
 	s->counted = fmax(s->counted, sqrt(counted));
-	for (int n = 0; !w->cusp && n < 3; n++)
-		for (uint32_t k = 0; k < p->curve.naxes; k++)
-			s->d[n][k] = fmax(s->d[n][k], fabs(w->d[n][k]));
+	for (uint32_t k = 0; !w->cusp && k < p->curve.naxes; k++)
+		s->d[k] = fmax(s->d[k], fabs(w->d[0][k]));
 }
 
 /* So slow that the jerk lets it speed up here, by no less than it must; by
@@ -196,7 +189,7 @@ static void limit_between(struct curve_plan *p, const struct curve_look *a,
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
 		const double far = farthest(a, b, k);
 
-		p->seen.d[0][k] = fmax(p->seen.d[0][k], far);
+		p->seen.d[k] = fmax(p->seen.d[k], far);
 		if (far * p->least_mm_s > p->limits.v_mm_s[k])
 			p->least_mm_s = p->limits.v_mm_s[k] / far;
 	}
@@ -240,63 +233,7 @@ double build_curve_rate(const struct curve_plan *p)
 	double rate = 0;
 
 	for (uint32_t k = 0; k < p->curve.naxes; k++)
-		rate = fmax(rate, p->seen.d[0][k] *
+		rate = fmax(rate, p->seen.d[k] *
 				  p->pulses_mm[p->curve.axis[k]]);
 	return rate;
-}
-
-/*
- * How fast to speed up along the present piece, at @v_mm_s, by what column @k
- * has left.  The ways along and across are square to each other.  So a counted
- * axis, in whatever direction it is, has what is left of both together.  A cusp
- * is passed at the slowest speed whatever it takes, and leaves the share.
- */
-static double left_mm_s2(const struct curve_plan *p, uint32_t k, double v_mm_s)
-{
-	const double a = build_curve_axis(p, k)->a_max_mm_s2;
-	const double part = along_part(p, k);
-	const double across = p->seen.bend * v_mm_s * v_mm_s;
-	const double left = a - p->seen.d[1][k] * v_mm_s * v_mm_s;
-
-	if (k >= p->curve.counted)
-		return fmax(left, part * a) / p->seen.d[0][k];
-	return fmax(fmax(left / p->seen.d[0][k], part * a),
-		    across < a ? sqrt(a * a - across * across) : 0);
-}
-
-/* The same of its jerk. */
-static double left_mm_s3(const struct curve_plan *p, uint32_t k, double v_mm_s)
-{
-	const double j = build_curve_axis(p, k)->j_max_mm_s3;
-
-	return fmax(j - p->seen.d[2][k] * v_mm_s * v_mm_s * v_mm_s,
-		    (1 - INTERP_CURVE_JERK_ROUND) * j);
-}
-
-/* How fast to speed up along the present piece, at @v_mm_s at most: to speed up
- * on a bend takes jerk, and no more than half of what is left. */
-void build_curve_along(const struct curve_plan *p, double v_mm_s,
-		       struct interp_piece *ret)
-{
-	double a = HUGE_VAL, j = HUGE_VAL;
-
-	if (p->share) {
-		build_share_along(p, v_mm_s, ret);
-		return;
-	}
-	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		a = fmin(a, left_mm_s2(p, k, v_mm_s));
-		a = fmin(a, fmax(left_mm_s3(p, k, v_mm_s) / 2 /
-				 (3 * p->seen.d[1][k] * v_mm_s),
-				 interp_bend_least(v_mm_s, p->a_mm_s2,
-						   p->j_mm_s3)));
-	}
-	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		const double left = left_mm_s3(p, k, v_mm_s);
-
-		j = fmin(j, fmax(left - 3 * p->seen.d[1][k] * v_mm_s * a,
-				 left / 2) / p->seen.d[0][k]);
-	}
-	ret->a_mm_s2 = BUILD_LOOKED * a;
-	ret->j_mm_s3 = BUILD_LOOKED * j;
 }

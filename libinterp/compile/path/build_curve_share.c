@@ -124,53 +124,6 @@ double build_share_mm_s(const struct curve_plan *p,
 	return build_curve_bend_mm_s(p, w, v, beside);
 }
 
-/* What column @k leaves of its acceleration along the piece in hand, at
- * @v_mm_s.  The ways along and across are square to each other.  So a counted
- * axis, in whatever direction it is, has what is left of both together. */
-static double left_mm_s2(const struct curve_plan *p, uint32_t k, double v_mm_s)
-{
-	const double a = build_curve_axis(p, k)->a_max_mm_s2;
-	const double across = p->seen.bend * v_mm_s * v_mm_s;
-	const double left = (a - p->seen.d[1][k] * v_mm_s * v_mm_s) /
-			    p->seen.d[0][k];
-
-	return k < p->curve.counted && across < a ?
-	       fmax(left, sqrt(a * a - across * across)) : left;
-}
-
-/* The same of its jerk. */
-static double left_mm_s3(const struct curve_plan *p, uint32_t k, double v_mm_s)
-{
-	return build_curve_axis(p, k)->j_max_mm_s3 -
-	       p->seen.d[2][k] * v_mm_s * v_mm_s * v_mm_s;
-}
-
-/*
- * Each place of the piece leaves what is kept there.  More is left where it
- * bends less; to speed up on a bend takes jerk, too.  A cusp is passed at the
- * slowest speed, whatever it takes.
- */
-void build_share_along(const struct curve_plan *p, double v_mm_s,
-		       struct interp_piece *ret)
-{
-	const struct curve_go kept = keep(p, p->seen.d[0], p->share);
-	double a = HUGE_VAL, j = HUGE_VAL;
-
-	for (uint32_t k = 0; k < p->curve.naxes; k++) {
-		a = fmin(a, left_mm_s2(p, k, v_mm_s));
-		a = fmin(a, (left_mm_s3(p, k, v_mm_s) -
-			     p->seen.d[0][k] * kept.j_mm_s3) /
-			    (3 * p->seen.d[1][k] * v_mm_s));
-	}
-	a = fmax(a, kept.a_mm_s2);
-	for (uint32_t k = 0; k < p->curve.naxes; k++)
-		j = fmin(j, (left_mm_s3(p, k, v_mm_s) -
-			     3 * p->seen.d[1][k] * v_mm_s * a) /
-			    p->seen.d[0][k]);
-	ret->a_mm_s2 = BUILD_LOOKED * a;
-	ret->j_mm_s3 = BUILD_LOOKED * fmax(j, kept.j_mm_s3);
-}
-
 /* -- The best share ------------------------------------------------------- */
 
 /* How fast each share may be there. */

@@ -3,11 +3,15 @@
  * build_early.c - a program that begins inside, while its text is still read
  *
  * As soon as the place is passed, what is before it is left out.  From then on
- * it is a program like any other, and a thread can find its limits.
+ * it is a program like any other.
  */
 #include "path/builder.h"
 
 #include <errno.h>
+
+/* After so many more segments it is asked whether the place is passed where the
+ * program begins. */
+#define STEP		16
 
 /* Of a part with a time the end is not known yet. */
 static bool is_timed(const struct interp_build *b)
@@ -56,4 +60,19 @@ void build_early_entry(const struct interp_build *b,
 		if (!ret->next_line && s[i].length_mm > 0)
 			ret->next_line = s[i].line;
 	}
+}
+
+int build_segs_room(struct interp_build *b)
+{
+	struct table *t = &b->segs;
+
+	if (build_early(b) < 0)
+		return -ENOMEM;
+	t->room = b->segs_room;
+	if (t->n == t->room && build_table_room(t, 1) < 0)
+		return -ENOMEM;
+	b->segs_room = t->room;
+	if (b->o.from && !b->inside.tried && t->room > t->n + STEP)
+		t->room = t->n + STEP;
+	return 0;
 }

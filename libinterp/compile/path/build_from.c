@@ -6,9 +6,10 @@
  * place: the electrode comes in along it.  The tables (arcs, curves, conditions
  * and so on) stay as they are; only segments and nodes are made anew.
  */
+#include "path/builder.h"
+
 #include "interp/build_from.h"
 #include "interp/mcode_arg.h"
-#include "path/build_limits.h"
 
 #include <errno.h>
 #include <math.h>
@@ -508,6 +509,5 @@ int interp_build_from(struct interp_build *b, const struct interp_build_from *o,
 		build_early_entry(b, ret);
 		return 0;
 	}
-	build_limits_stop(b);
 	return build_leave_out(b, o, ret, diag);
 }

@@ -3,9 +3,9 @@
  * build_pair_add.c - adds two contours as a segment, and their plan to the
  * tables
  */
+#include "path/builder.h"
 #include "path/build_pair.h"
 #include "path/build_edge.h"
-#include "path/build_limits.h"
 #include "pulse/pulse.h"
 #include "pulse/strategy.h"
 
@@ -38,7 +38,7 @@ static int places_add(struct interp_build *b, const struct build_pair *p, int i,
 static int couple_add(struct interp_build *b, const struct build_pair *p)
 {
 	const size_t words = p->bits ? pulse_string_words(p->ticks) : 0;
-	struct interp_couple *c = build_seen_add(b, &b->couples);
+	struct interp_couple *c = build_table_add(&b->couples);
 
 	if (!c)
 		return -ENOMEM;

@@ -9,7 +9,7 @@
 
 #include "interp/build_from.h"
 #include "path/build_rule.h"
-#include "speed/follow.h"
+#include "interp/program.h"
 
 struct table {
 	void *at;
@@ -98,10 +98,6 @@ struct interp_build {
 	const struct interp_tech *tech;	/* from this cond was made */
 	struct build_inside inside;
 	size_t segs_room;		/* of which segs.room is a part */
-	struct follow *follow;		/* finds limits meanwhile; NULL: nobody
-					 * does */
-	struct interp_program seen;	/* by it */
-	struct interp_program_head seen_head;
 };
 
 /** build_table_room() - make room for @n more.  Return: 0 or -ENOMEM. */
@@ -232,6 +228,10 @@ int build_count_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 int build_count_curve(struct interp_build *b,
 		      const struct interp_build_curve *c,
 		      struct interp_diag *diag);
+
+/** build_segs_room() - make room for one more segment.  All others are whole.
+ *  Return: 0 or -ENOMEM. */
+int build_segs_room(struct interp_build *b);
 
 /**
  * build_early() - if the place that the options name is passed, leave out what

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* sections.c - a program's way from stand to stand, in sections */
+/* sections.c - a program's way in sections */
 #include "speed/sections.h"
 
 #include "speed/heading.h"
@@ -16,16 +16,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define WITHIN		4	/* corners: over so little, two are one */
+
+/* So far inside a piece of a curve, as a share of it, is its end. */
+#define INSIDE		1e-6
+
 #define SHORT_CORNERS	100	/* lines shorter than so many corners stand for
 				 * a curve */
-
-/* What a section goes along.  Of a run: part. */
-struct along {
-	const struct interp_program *p;
-	uint32_t seg;
-	struct run_part part;
-	struct interp_at_curve curve;
-};
 
 struct making {
 	struct sections *to;
@@ -51,6 +48,16 @@ struct interp_axes sections_axes(const struct interp_limits *l,
 		ret.j_mm_s3[k] = m->j_max_mm_s3;
 	}
 	return ret;
+}
+
+double sections_tolerance(const struct interp_limits *l,
+			  const struct interp_program *p, uint32_t column)
+{
+	const uint8_t axis = p->head->column[column];
+	const double by = interp_axis_is_rotary((enum interp_axis)axis) ?
+			  180 / M_PI / l->rotary_radius_mm : 1;
+
+	return larger(p->head->pulse_mm[axis], l->tolerance_mm * by);
 }
 
 /* -- Ways ------------------------------------------------------------------ */
@@ -90,104 +97,101 @@ static void of_arc(const struct interp_program *p, const struct interp_arc *a,
 	}
 }
 
-static void of_curve(struct along *k, const struct interp_seg *s, double part,
+static void of_curve(struct sections *w, const struct interp_seg *s, double part,
 		     double *ret)
 {
-	const struct interp_program *p = k->p;
+	const struct interp_program *p = w->p;
 	const struct interp_piece *piece = &p->pieces[s->arg];
 	const struct interp_nurbs_stop *stops = p->stops + piece->stops_at;
 	struct interp_nurbs_between between;
-	struct interp_nurbs_way w;
+	struct interp_nurbs_way way_at;
 	double s_mm = stops[piece->nstops - 1].s_mm * part;
 
-	if (!k->curve.open) {
+	if (!w->curve.open || w->curve.curve != piece->curve) {
 		struct interp_nurbs c;
 
 		if (!interp_program_curve(p, piece->curve, &c))
 			return;
-		interp_nurbs_open(&k->curve.eval, &c);
-		k->curve.open = true;
+		interp_nurbs_open(&w->curve.eval, &c);
+		w->curve.open = true;
+		w->curve.curve = piece->curve;
 	}
 	stops += interp_nurbs_stop_of(stops, piece->nstops, s_mm);
 	interp_nurbs_between(stops, &between);
-	interp_nurbs_way(&k->curve.eval, interp_nurbs_between_at(&between,
-								 s_mm), &w);
-	for (uint32_t j = 0; !w.cusp && j < k->curve.eval.c.naxes; j++) {
+	interp_nurbs_way(&w->curve.eval, interp_nurbs_between_at(&between,
+								 s_mm), &way_at);
+	for (uint32_t j = 0; !way_at.cusp && j < w->curve.eval.c.naxes; j++) {
 		double *way = ret + INTERP_AXES_WAY * heading_column(
 			p, p->curves[piece->curve].axis[j]);
 
 		for (int i = 0; i < INTERP_AXES_WAY; i++)
-			way[i] = w.d[i][j];
+			way[i] = way_at.d[i][j];
 	}
 }
 
-static void seg_way(const void *of, double s_mm, double *ret)
+static void seg_way(struct sections *w, uint32_t seg, double s_mm, double *ret)
 {
-	struct along *k = (struct along *)(uintptr_t)of;
-	const struct interp_program *p = k->p;
-	const struct interp_seg *s = &p->segs[k->seg];
+	const struct interp_program *p = w->p;
+	const struct interp_seg *s = &p->segs[seg];
 	const double part = larger(smaller((s_mm - s->s_mm) / s->length_mm, 1),
 				   0);
 
-	of_line(p, k->seg, ret);
+	of_line(p, seg, ret);
 	if (s->kind == INTERP_ARC)
 		of_arc(p, &p->arcs[s->arg], part, s->length_mm, ret);
 	for (int side = 0; s->kind == INTERP_PAIR && side < 2; side++)
 		of_arc(p, &p->couples[s->arg].side[side], part, s->length_mm,
 		       ret);
 	if (s->kind == INTERP_CURVE)
-		of_curve(k, s, part, ret);
+		of_curve(w, s, part, ret);
 }
 
-static void part_way(const void *of, double s_mm, double *ret)
+void sections_way(struct sections *w, const struct section *s, double s_mm,
+		  double *ret)
 {
-	const struct along *k = of;
-
-	run_part_way(&k->part, s_mm, ret);
+	if (s->part)
+		run_part_way(s->part, s_mm, ret);
+	else
+		seg_way(w, s->from, s_mm, ret);
 }
 
 /* -- Sections -------------------------------------------------------------- */
 
-static double feed_mm_s(const struct interp_seg *s)
+static uint32_t along_of(const struct making *m, uint32_t seg)
 {
-	return s->flags & INTERP_SEG_RAPID ? INFINITY : (double)s->feed_mm_s;
+	struct headings h;
+
+	heading_of(&m->ways, seg, &h);
+	return h.first.along;
 }
 
-static int add(struct making *m, uint32_t seg, double from_mm, double to_mm,
-	       struct along **ret)
+static int add(struct making *m, uint32_t from, uint32_t to,
+	       struct run_part *part)
 {
-	struct sections *to = m->to;
-	size_t corners = to->room;
+	struct sections *k = m->to;
 
-	*ret = calloc(1, sizeof(**ret));
-	if (!*ret)
+	if (k->n == k->room &&
+	    grow_array(&k->at, &k->room, sizeof(*k->at)) < 0)
 		return -ENOMEM;
-	if (to->n == to->room &&
-	    (grow_array(&to->corner_mm_s, &corners, sizeof(double)) < 0 ||
-	     grow_array(&to->at, &to->room, sizeof(*to->at)) < 0)) {
-		free(*ret);
-		return -ENOMEM;
-	}
-	**ret = (struct along) { .p = m->p, .seg = seg };
-	to->at[to->n++] = (struct profile_section) {
-		from_mm, to_mm, feed_mm_s(&m->p->segs[seg]), seg_way, *ret
-	};
+	k->at[k->n++] = (struct section) { .from = from, .to = to,
+					   .part = part,
+					   .along = along_of(m, from),
+					   .corner_mm_s = INFINITY };
 	return 0;
 }
 
 static int add_part(void *to, struct run_part *part)
 {
 	struct making *m = to;
-	const struct run *r = m->run;
-	struct along *k;
-	const int err = add(m, m->seg, r->s_mm[part->first],
-			    r->s_mm[part->last], &k);
+	struct run_part *own = malloc(sizeof(*own));
 
-	if (err < 0)
-		return err;
-	k->part = *part;
+	if (!own || add(m, m->seg + (uint32_t)part->first,
+			m->seg + (uint32_t)part->last, own) < 0) {
+		free(own);
+		return -ENOMEM;
+	}
+	*own = *part;
 	part->shape = (struct shape) { 0 };
-	m->to->at[m->to->n - 1].way = part_way;
 	return 0;
 }
 
@@ -199,25 +203,14 @@ static bool is_short(const struct making *m, uint32_t i)
 	       s->length_mm < SHORT_CORNERS * m->l->corner_mm;
 }
 
-static uint32_t along_of(const struct making *m, uint32_t seg)
-{
-	struct headings h;
-
-	heading_of(&m->ways, seg, &h);
-	return h.first.along;
-}
-
-/* Behind the run that begins with segment @i: at the same F, its length in the
- * same columns. */
+/* Behind the run that begins with segment @i: its length is in the same
+ * columns. */
 static uint32_t run_end(const struct making *m, uint32_t i, uint32_t to)
 {
 	struct heading_run run = heading_run(&m->ways, i);
-	const double feed = feed_mm_s(&m->p->segs[i]);
 	uint32_t end = i;
 
-	while (end < to && is_short(m, end) &&
-	       !(feed_mm_s(&m->p->segs[end]) < feed) &&
-	       !(feed_mm_s(&m->p->segs[end]) > feed))
+	while (end < to && is_short(m, end))
 		end++;
 	heading_run_on(&m->ways, &run, end);
 	return run.at < end ? run.at : end;
@@ -235,11 +228,7 @@ static int add_run(struct making *m, uint32_t from, uint32_t to)
 	int err = s && x ? 0 : -ENOMEM;
 
 	for (uint32_t k = 0; k < n; k++)
-		r.tolerance[k] = larger(
-			m->p->head->pulse_mm[m->p->head->column[k]],
-			m->l->tolerance_mm *
-			(interp_axis_is_rotary(m->p->head->column[k]) ?
-			 180 / M_PI / m->l->rotary_radius_mm : 1));
+		r.tolerance[k] = sections_tolerance(m->l, m->p, k);
 	for (size_t i = 0; err == 0 && i < nodes; i++) {
 		const struct interp_seg *seg = &m->p->segs[from + i];
 
@@ -258,46 +247,70 @@ static int add_run(struct making *m, uint32_t from, uint32_t to)
 	return err;
 }
 
-/* How fast the end of each section may be passed. */
+/* At an end of a section.  The two sides of a knot of a curve may differ. */
+static void way_at_end(struct sections *w, const struct section *s, bool last,
+		       double *ret)
+{
+	const struct interp_seg *k = &w->p->segs[last ? s->to - 1 : s->from];
+	const double in = k->kind == INTERP_CURVE ? INSIDE : 0;
+
+	sections_way(w, s, k->s_mm + k->length_mm * (last ? 1 - in : in), ret);
+}
+
+static double section_mm(const struct sections *w, const struct section *s)
+{
+	const struct interp_seg *a = &w->p->segs[s->from];
+	const struct interp_seg *b = &w->p->segs[s->to - 1];
+
+	return b->s_mm + b->length_mm - a->s_mm;
+}
+
+/* How fast the end of each section may be passed.  Where sections are so short
+ * that they are within a corner, what they turn by together is one. */
 static void find_corners(struct making *m)
 {
-	struct sections *s = m->to;
+	struct sections *w = m->to;
 	double before[INTERP_NAXES * INTERP_AXES_WAY];
 	double behind[INTERP_NAXES * INTERP_AXES_WAY];
 
-	for (size_t i = 0; i + 1 < s->n; i++) {
-		const struct along *a = s->at[i].of, *b = s->at[i + 1].of;
+	for (size_t i = 0; i + 1 < w->n; i++) {
+		struct section *a = &w->at[i], *b = a + 1;
+		double mm = 0;
 
-		s->at[i].way(a, s->at[i].to_mm, before);
-		s->at[i + 1].way(b, s->at[i + 1].from_mm, behind);
-		s->corner_mm_s[i] = interp_axes_corner_mm_s(
-			&m->axes, before, behind,
-			along_of(m, a->seg) & along_of(m, b->seg),
-			m->l->corner_mm);
+		way_at_end(w, a, true, before);
+		do {
+			double v;
+
+			way_at_end(w, b, false, behind);
+			v = interp_axes_corner_mm_s(&m->axes, before, behind,
+						    a->along & b->along,
+						    m->l->corner_mm);
+			for (struct section *k = a; k < b; k++)
+				k->corner_mm_s = smaller(k->corner_mm_s, v);
+			mm += section_mm(w, b);
+			b++;
+		} while (mm < WITHIN * m->l->corner_mm && b < w->at + w->n);
 	}
 }
 
 int sections_make(struct sections *ret, const struct interp_limits *l,
-		  const struct interp_program *p, uint32_t from, uint32_t to)
+		  const struct interp_program *p)
 {
 	struct making m = { .to = ret, .l = l, .p = p,
 			    .axes = sections_axes(l, p) };
 	int err = 0;
 
-	*ret = (struct sections) { 0 };
+	*ret = (struct sections) { .p = p };
 	heading_ways_init(&m.ways, p);
-	for (uint32_t i = from, end; err == 0 && i < to; i = end) {
-		const struct interp_seg *s = &p->segs[i];
-		struct along *k;
-
+	for (uint32_t i = 1, end; err == 0 && i + 1 < p->head->nsegs; i = end) {
 		end = i + 1;
-		if (!(s->length_mm > 0))
+		if (p->segs[i].kind >= INTERP_BEGIN)
 			continue;
 		if (is_short(&m, i)) {
-			end = run_end(&m, i, to);
+			end = run_end(&m, i, p->head->nsegs - 1);
 			err = add_run(&m, i, end);
 		} else {
-			err = add(&m, i, s->s_mm, s->s_mm + s->length_mm, &k);
+			err = add(&m, i, end, NULL);
 		}
 	}
 	if (err < 0)
@@ -310,12 +323,10 @@ int sections_make(struct sections *ret, const struct interp_limits *l,
 void sections_free(struct sections *s)
 {
 	for (size_t i = 0; i < s->n; i++) {
-		struct along *k = (struct along *)(uintptr_t)s->at[i].of;
-
-		shape_free(&k->part.shape);
-		free(k);
+		if (s->at[i].part)
+			shape_free(&s->at[i].part->shape);
+		free(s->at[i].part);
 	}
 	free(s->at);
-	free(s->corner_mm_s);
 	*s = (struct sections) { 0 };
 }

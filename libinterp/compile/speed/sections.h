@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * sections.h - a program's way from stand to stand, in sections on which its
- * derivatives are continuous
+ * sections.h - a program's way in sections on which its derivatives are
+ * continuous
  *
  * A long line, an arc, a pair and a piece of a curve are each a section, in
  * closed form.  Short lines behind each other are runs (run.h).
@@ -11,28 +11,47 @@
 #ifndef SPEED_SECTIONS_H
 #define SPEED_SECTIONS_H
 
-#include "speed/profile.h"
-
+#include "interp/at.h"
+#include "interp/axes.h"
 #include "interp/limits.h"
 #include "interp/program.h"
 
-/* Opaque but for what profile_solve() takes. */
+#include <stddef.h>
+
+struct section {
+	uint32_t from, to;		/* its segments, up to but not with
+					 * @to */
+	uint32_t along;			/* columns that make its length */
+	double corner_mm_s;		/* how fast its end may be passed */
+	struct run_part *part;		/* NULL: it is one segment */
+};
+
 struct sections {
+	const struct interp_program *p;
 	size_t n, room;
-	struct profile_section *at;
-	double *corner_mm_s;
+	struct section *at;
+	struct interp_at_curve curve;	/* that was looked at last */
 };
 
 /**
- * sections_make() - of segments @from up to, but not with, @to, none of them an
- * action.
+ * sections_make() - of the whole of @p.
  *
  * Return: 0, -ENOMEM.
  */
 int sections_make(struct sections *ret, const struct interp_limits *l,
-		  const struct interp_program *p, uint32_t from, uint32_t to);
+		  const struct interp_program *p);
+
+/** sections_way() - r', r'' and r''' of each column at the place @s_mm, as
+ *  interp/axes.h takes them. */
+void sections_way(struct sections *w, const struct section *s, double s_mm,
+		  double *ret);
 
 void sections_free(struct sections *s);
+
+/** sections_tolerance() - of that column: what is less is a rounding.  It is a
+ *  pulse at least. */
+double sections_tolerance(const struct interp_limits *l,
+			  const struct interp_program *p, uint32_t column);
 
 /** sections_axes() - what the axis of each column of @p can do. */
 struct interp_axes sections_axes(const struct interp_limits *l,

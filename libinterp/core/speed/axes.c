@@ -24,25 +24,35 @@ struct interp_straight interp_axes_straight(const struct interp_axes *x,
 	return ret;
 }
 
-/* What a motion has kept that speeds up from a stand to @v_mm_s. */
-static double kept_mm_s2(const struct interp_straight *s, double v_mm_s)
+/* Of @kept, what a place can have. */
+static struct interp_straight keep(const struct interp_straight *s,
+				   const struct interp_straight *kept)
+{
+	return (struct interp_straight) {
+		smaller(kept->a_mm_s2, INTERP_AXES_KEPT * s->a_mm_s2),
+		smaller(kept->j_mm_s3, INTERP_AXES_KEPT * s->j_mm_s3)
+	};
+}
+
+/* From a stand to @v_mm_s no motion comes to more than that. */
+static double comes_to_mm_s2(const struct interp_straight *s, double v_mm_s)
 {
 	return v_mm_s * s->j_mm_s3 < s->a_mm_s2 * s->a_mm_s2 ?
 	       sqrt(v_mm_s * s->j_mm_s3) : s->a_mm_s2;
 }
 
-/* The speed below @v at which a column leaves the jerk that is kept. */
-static double by_jerk_mm_s(const double *way, const struct interp_straight *s,
+/* The speed below @v at which a column leaves @left_mm_s3 of the jerk. */
+static double by_jerk_mm_s(const double *way,
+			   const struct interp_straight *kept,
 			   double left_mm_s3, double v)
 {
-	const double twist = fabs(way[2]);
-	const double bend = 3 * fabs(way[1]) * INTERP_AXES_KEPT;
+	const double twist = fabs(way[2]), bend = 3 * fabs(way[1]);
 
 	for (int i = 0; i < ROOT_STEPS; i++) {
-		const double a = kept_mm_s2(s, v);
+		const double a = comes_to_mm_s2(kept, v);
 		const double is = (twist * v * v + bend * a) * v;
 		const double slope = 3 * twist * v * v +
-				     bend * a * (a < s->a_mm_s2 ? 1.5 : 1);
+				     bend * a * (a < kept->a_mm_s2 ? 1.5 : 1);
 
 		if (is <= left_mm_s3 * ROOT_NEAR)
 			break;
@@ -51,9 +61,11 @@ static double by_jerk_mm_s(const double *way, const struct interp_straight *s,
 	return v;
 }
 
-double interp_axes_mm_s(const struct interp_axes *x, const double *way)
+double interp_axes_mm_s(const struct interp_axes *x, const double *way,
+			const struct interp_straight *kept)
 {
 	const struct interp_straight s = interp_axes_straight(x, way);
+	const struct interp_straight go = keep(&s, kept);
 	double v = INFINITY;
 
 	for (uint32_t k = 0; k < x->n; k++) {
@@ -63,59 +75,63 @@ double interp_axes_mm_s(const struct interp_axes *x, const double *way)
 			v = x->v_mm_s[k] / by;
 	}
 	for (uint32_t k = 0; k < x->n; k++, way += INTERP_AXES_WAY) {
-		const double kept = INTERP_AXES_KEPT * fabs(way[0]);
-		const double a = x->a_mm_s2[k] - (kept > 0 ?
-						  kept * s.a_mm_s2 : 0);
-		const double j = x->j_mm_s3[k] - (kept > 0 ?
-						  kept * s.j_mm_s3 : 0);
+		const double by = fabs(way[0]);
+		const double a = x->a_mm_s2[k] -
+				 (by > 0 ? by * go.a_mm_s2 : 0);
+		const double j = x->j_mm_s3[k] -
+				 (by > 0 ? by * go.j_mm_s3 : 0);
 
 		if (fabs(way[1]) * v * v > a)
 			v = sqrt(a / fabs(way[1]));
-		v = by_jerk_mm_s(way, &s, j, v);
+		if (way[1] != 0 || way[2] != 0)
+			v = by_jerk_mm_s(way, &go, j, v);
 	}
 	return v;
 }
 
-/* What is left of @all beside @other, by so much along the path. */
-static void narrow(struct interp_range *r, double by, double all, double other)
+/* What column @k leaves beside its bend. */
+static void leave(const struct interp_axes *x, uint32_t k, const double *way,
+		  double v, const struct interp_straight *go,
+		  struct interp_straight *ret)
 {
-	const double up = ((by < 0 ? -all : all) - other) / by;
-	const double down = ((by < 0 ? all : -all) - other) / by;
+	const double by = fabs(way[0]), bend = fabs(way[1]);
+	const double a = x->a_mm_s2[k] - bend * v * v;
+	const double j = x->j_mm_s3[k] - fabs(way[2]) * v * v * v -
+			 (by > 0 ? by * go->j_mm_s3 : 0);
 
-	r->most = smaller(r->most, up);
-	r->least = larger(r->least, down);
+	if (by * ret->a_mm_s2 > a)
+		ret->a_mm_s2 = a / by;
+	if (!(3 * bend * v * ret->a_mm_s2 > j))
+		return;
+	if (3 * bend * v * comes_to_mm_s2(go, v) * ROOT_NEAR > j)
+		ret->a_mm_s2 = smaller(ret->a_mm_s2, j / (3 * bend * v));
+	else
+		ret->j_mm_s3 = smaller(ret->j_mm_s3, go->j_mm_s3);
 }
 
-struct interp_range interp_axes_mm_s2(const struct interp_axes *x,
-				      const double *way, double v_mm_s)
+struct interp_straight interp_axes_left(const struct interp_axes *x,
+					const double *way, double v_mm_s,
+					const struct interp_straight *kept)
 {
-	struct interp_range r = { -INFINITY, INFINITY };
-	const double v2 = v_mm_s * v_mm_s;
+	const struct interp_straight s = interp_axes_straight(x, way);
+	const struct interp_straight go = keep(&s, kept);
+	struct interp_straight ret = s;
+	const double v = v_mm_s;
+	double a;
 
+	for (uint32_t k = 0; k < x->n; k++)
+		leave(x, k, way + k * INTERP_AXES_WAY, v, &go, &ret);
+	ret.a_mm_s2 = larger(ret.a_mm_s2, go.a_mm_s2);
+	a = smaller(ret.a_mm_s2, comes_to_mm_s2(&ret, v));
 	for (uint32_t k = 0; k < x->n; k++, way += INTERP_AXES_WAY) {
-		const double bend = 3 * fabs(way[1]) * v_mm_s;
+		const double by = fabs(way[0]);
+		const double j = x->j_mm_s3[k] -
+				 (fabs(way[2]) * v * v +
+				  3 * fabs(way[1]) * a) * v;
 
-		if (way[0] != 0)
-			narrow(&r, way[0], x->a_mm_s2[k], way[1] * v2);
-		if (bend > 0)
-			narrow(&r, bend, larger((1 - INTERP_AXES_KEPT) *
-							x->j_mm_s3[k] -
-						fabs(way[2]) * v2 * v_mm_s, 0),
-			       0);
+		if (by * ret.j_mm_s3 > j)
+			ret.j_mm_s3 = j / by;
 	}
-	return r;
-}
-
-struct interp_range interp_axes_mm_s3(const struct interp_axes *x,
-				      const double *way, double v_mm_s,
-				      double a_mm_s2)
-{
-	struct interp_range r = { -INFINITY, INFINITY };
-
-	for (uint32_t k = 0; k < x->n; k++, way += INTERP_AXES_WAY)
-		if (way[0] != 0)
-			narrow(&r, way[0], x->j_mm_s3[k],
-			       (3 * way[1] * a_mm_s2 +
-				way[2] * v_mm_s * v_mm_s) * v_mm_s);
-	return r;
+	ret.j_mm_s3 = larger(ret.j_mm_s3, go.j_mm_s3);
+	return ret;
 }

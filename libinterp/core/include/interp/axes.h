@@ -22,13 +22,6 @@
 
 #include "interp/axis.h"
 
-/*
- * The share of each axis that no bend takes: with it a motion can always begin
- * to brake.  With 0.02 programs are 1 % quicker, and holds of one in twenty 6 %
- * longer; with 0.3 programs are 8 % slower.
- */
-#define INTERP_AXES_KEPT	0.1
-
 #define INTERP_AXES_WAY		3	/* numbers a column */
 
 /* What the axis of each column can do. */
@@ -39,10 +32,6 @@ struct interp_axes {
 	double j_mm_s3[INTERP_NAXES];
 };
 
-struct interp_range {
-	double least, most;
-};
-
 /* Along a path that does not bend. */
 struct interp_straight {
 	double a_mm_s2, j_mm_s3;
@@ -51,20 +40,21 @@ struct interp_straight {
 struct interp_straight interp_axes_straight(const struct interp_axes *x,
 					    const double *way);
 
-/** interp_axes_mm_s() - the greatest speed at a place, at which each axis keeps
- *  its share for going along. */
-double interp_axes_mm_s(const struct interp_axes *x, const double *way);
+/* No bend takes more than that of what the axes can do along the path: the rest
+ * is there to speed up and to brake. */
+#define INTERP_AXES_KEPT	0.9
 
-/** interp_axes_mm_s2() - the accelerations along the path at @v_mm_s.  What
- *  they take of the jerk on a bend leaves the share of it. */
-struct interp_range interp_axes_mm_s2(const struct interp_axes *x,
-				      const double *way, double v_mm_s);
+/** interp_axes_mm_s() - the greatest speed at a place, at which the axes leave
+ *  @kept for going along, or most of what they can do. */
+double interp_axes_mm_s(const struct interp_axes *x, const double *way,
+			const struct interp_straight *kept);
 
-/** interp_axes_mm_s3() - the jerks along the path at that speed and
- *  acceleration.  The least may be more than the most: then there is none. */
-struct interp_range interp_axes_mm_s3(const struct interp_axes *x,
-				      const double *way, double v_mm_s,
-				      double a_mm_s2);
+/** interp_axes_left() - what the axes leave for going along at @v_mm_s, or
+ *  slower, to either side.  At the speed of interp_axes_mm_s() that is no less than
+ *  @kept. */
+struct interp_straight interp_axes_left(const struct interp_axes *x,
+					const double *way, double v_mm_s,
+					const struct interp_straight *kept);
 
 /**
  * interp_axes_corner_mm_s() - the greatest speed over a node at which the path

@@ -129,8 +129,6 @@ struct interp_limits {
 	double rotary_radius_mm;	/* > 0: where it is a rotary axis's,
 					 * too */
 	double points_per_s;		/* lattice points; 0: no limit */
-	uint32_t threads;		/* over 1: it has another one for a
-					 * while, which it waits for */
 };
 
 /**
@@ -138,11 +136,11 @@ struct interp_limits {
  * slower_*, softer_* and INTERP_SEG_STAND of @segs.
  *
  * @segs, @bends: the segments of @p, and its bends, which it fills; writable.
- * Any thread, but not for the cycle.
+ * Return: 0, -ENOMEM.  Any thread, but not for the cycle.
  */
-void interp_limits_write(const struct interp_limits *l,
-			 const struct interp_program *p,
-			 struct interp_seg *segs, struct interp_bends *bends);
+int interp_limits_write(const struct interp_limits *l,
+			const struct interp_program *p, struct interp_seg *segs,
+			struct interp_bends *bends);
 
 /**
  * interp_limits_into() - how fast segment @i may be entered, going forward:

@@ -240,7 +240,6 @@ struct interp_piece {
 	uint32_t curve;
 	uint32_t nstops;
 	uint64_t stops_at;
-	double a_mm_s2, j_mm_s3;	/* along it, that its axes allow */
 };
 
 /* So many segments have their bends in one. */
