@@ -154,22 +154,21 @@ static struct soft limits_of(const struct cycle *c, const struct ahead_move *w)
 }
 
 /* A move that goes on to another goal stands at the first one, if beyond it the
- * axes allow less. */
+ * axes allow less, or if its ceiling was chosen for the way to there. */
 static void go_on_to(struct cycle *c, const struct ahead_move *w)
 {
-	struct soft s = limits_of(c, w);
+	struct cycle_ahead *a = &c->ahead;
+	const struct soft s = limits_of(c, w);
 
-	if (isfinite(c->ahead.l.v_max_mm_s)) {
-		s.l = w->l;
-		if (s.next != 0 ||
-		    !slow_limits_at(c, w, end_mm(w, s.stand_mm),
-				    c->ahead.l.v_max_mm_s, &s.l))
-			return;
-	}
-	if (is_softer(&s.l, &c->ahead.l))
+	if (isfinite(a->l.v_max_mm_s)) {
+		if (!isfinite(a->stand_mm))
+			a->stand_mm = a->goal_mm;
 		return;
-	c->ahead.stand_mm = s.stand_mm;
-	c->ahead.next = s.next;
+	}
+	if (is_softer(&s.l, &a->l))
+		return;
+	a->stand_mm = s.stand_mm;
+	a->next = s.next;
 }
 
 /* Not all of the way was looked at when the move began: some more in each cycle

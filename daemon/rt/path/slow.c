@@ -190,14 +190,3 @@ void slow_limits(const struct cycle *c, const struct ahead_move *w,
 	    time_s(c, &slow, way_mm) < time_s(c, &fast, way_mm))
 		*l = slow;
 }
-
-bool slow_limits_at(const struct cycle *c, const struct ahead_move *w,
-		    double end_mm, double ceiling_mm_s, struct mover_limits *l)
-{
-	struct parts b;
-
-	if (!isfinite(ceiling_mm_s) || !bends_to(c, w, end_mm, &b))
-		return false;
-	*l = under(l, &b, ceiling_mm_s);
-	return is_sound(l);
-}

@@ -21,15 +21,4 @@
 void slow_limits(const struct cycle *c, const struct ahead_move *w,
 		 double end_mm, struct mover_limits *l);
 
-/**
- * slow_limits_at() - the acceleration and jerk, as far as @end_mm, under a
- * ceiling that is chosen already.
- *
- * @l: what the move may have by itself; softened.
- *
- * Return: false if that is not known.
- */
-bool slow_limits_at(const struct cycle *c, const struct ahead_move *w,
-		    double end_mm, double ceiling_mm_s, struct mover_limits *l);
-
 #endif /* RT_SLOW_H */

@@ -54,6 +54,7 @@ struct making {
 	struct interp_axes axes;
 	struct ways ways;
 	double tol[INTERP_NAXES];	/* of each column */
+	double step_mm_s[INTERP_NAXES];	/* at a node */
 	float weakest_mm_s2, weakest_mm_s3;	/* column */
 	struct looks *looks;		/* of each segment */
 	size_t n, room;
@@ -78,57 +79,58 @@ static int look(struct making *m, const struct section *s, double s_mm)
 	return 0;
 }
 
-static int look_at(struct making *m, const struct section *s)
-{
-	const struct interp_seg *segs = m->pass.segs;
-	int err = 0;
-
-	for (uint32_t i = s->from; err == 0 && i < s->to; i++) {
-		const struct interp_seg *k = &segs[i];
-		struct looks *looks = &m->looks[i];
-
-		looks->at = (uint32_t)m->n;
-		looks->corner_mm_s = INFINITY;
-		looks->goes_on = i + 1 < s->to;
-		looks->n = s->part ? 2 : looks_of(k);
-		if (looks->n == 1 || s->part) {
-			err = look(m, s, k->s_mm);
-			continue;
-		}
-		for (uint32_t n = 0; err == 0 && n < looks->n; n++)
-			err = look(m, s, k->s_mm + k->length_mm * n /
-						   (looks->n - 1));
-	}
-	if (err == 0 && s->part)
-		err = look(m, s, segs[s->to - 1].s_mm +
-				 segs[s->to - 1].length_mm);
-	return err;
-}
-
 static void lessen(struct interp_seg *s, const struct interp_straight *left)
 {
 	s->a_mm_s2 = pass_least(s->a_mm_s2, (float)left->a_mm_s2);
 	s->j_mm_s3 = pass_least(s->j_mm_s3, (float)left->j_mm_s3);
 }
 
-/* How fast the axes of line @i are at most: by what it goes by, but for what a
- * rounding of its ends makes of that.  INFINITY: it is no more than that. */
-static double axes_mm_s(const struct making *m, uint32_t i)
+/* By how much column @k goes in a mm of line @i, and what a rounding of its ends
+ * makes of that. */
+struct rate {
+	double by, off;
+};
+
+static struct rate rate_of(const struct making *m, uint32_t i, uint32_t k)
 {
 	const uint32_t n = m->axes.n;
-	const int64_t *a = m->pass.p->nodes + (uint64_t)i * n, *b = a + n;
-	const double mm = m->pass.segs[i].length_mm;
+	const int64_t *a = m->pass.p->nodes + (uint64_t)i * n + k;
+	const double per_mm = 1 / m->pass.segs[i].length_mm;
+	const double by = (double)(a[n] - a[0]) * m->ways.sub_mm[k] * per_mm;
+	const double size = smaller(larger(fabs(by), 1), RATE_MOST);
+
+	return (struct rate) { by, m->tol[k] * (1 + size) * per_mm };
+}
+
+/* How fast the axes of line @i are at most.  INFINITY: it is a rounding. */
+static double axes_mm_s(const struct making *m, uint32_t i)
+{
 	double v = INFINITY;
 
-	for (uint32_t k = 0; k < n; k++) {
-		const double by = fabs((double)(b[k] - a[k])) *
-				  m->ways.sub_mm[k] / mm;
-		const double rate = larger(by, 1);
-		const double off = m->tol[k] * (1 + smaller(rate, RATE_MOST));
-		const double sure = by * (1 - off / (rate * mm));
+	for (uint32_t k = 0; k < m->axes.n; k++) {
+		const struct rate r = rate_of(m, i, k);
+		const double by = fabs(r.by);
+		const double sure = by * (1 - r.off / larger(by, 1));
 
 		if (sure * v > m->axes.v_mm_s[k])
 			v = m->axes.v_mm_s[k] / sure;
+	}
+	return v;
+}
+
+/* The machine goes along the lines: at the node behind line @i each axis makes a
+ * step of its speed, however smooth the shape is. */
+static double step_mm_s(const struct making *m, uint32_t i)
+{
+	double v = INFINITY;
+
+	for (uint32_t k = 0; k < m->axes.n; k++) {
+		const struct rate a = rate_of(m, i, k);
+		const struct rate b = rate_of(m, i + 1, k);
+		const double sure = fabs(b.by - a.by) - a.off - b.off;
+
+		if (sure * v > m->step_mm_s[k])
+			v = m->step_mm_s[k] / sure;
 	}
 	return v;
 }
@@ -158,7 +160,8 @@ static void write_seg(struct making *m, uint32_t i,
 	s->j_mm_s3 = isinf(s->j_mm_s3) ? m->weakest_mm_s3 : s->j_mm_s3;
 	if (isinf(most))
 		most = v = (double)k->own_mm_s;
-	s->node_mm_s = k->goes_on ? (float)v : k->corner_mm_s;
+	s->node_mm_s = k->goes_on ? pass_least((float)v, k->corner_mm_s) :
+				    k->corner_mm_s;
 	s->feed_max_mm_s = k->own_mm_s;
 	if (k->n == 2 && !(s->flags & INTERP_SEG_KNOWN)) {
 		s->feed_max_mm_s = (float)smaller(most, axes_mm_s(m, i));
@@ -283,6 +286,34 @@ static void choose_all(struct making *m)
 			to++;
 		choose(m, i, to);
 	}
+}
+
+static int look_at(struct making *m, const struct section *s)
+{
+	const struct interp_seg *segs = m->pass.segs;
+	int err = 0;
+
+	for (uint32_t i = s->from; err == 0 && i < s->to; i++) {
+		const struct interp_seg *k = &segs[i];
+		struct looks *looks = &m->looks[i];
+
+		looks->at = (uint32_t)m->n;
+		looks->goes_on = i + 1 < s->to;
+		looks->corner_mm_s = looks->goes_on ? (float)step_mm_s(m, i) :
+						      INFINITY;
+		looks->n = s->part ? 2 : looks_of(k);
+		if (looks->n == 1 || s->part) {
+			err = look(m, s, k->s_mm);
+			continue;
+		}
+		for (uint32_t n = 0; err == 0 && n < looks->n; n++)
+			err = look(m, s, k->s_mm + k->length_mm * n /
+						   (looks->n - 1));
+	}
+	if (err == 0 && s->part)
+		err = look(m, s, segs[s->to - 1].s_mm +
+				 segs[s->to - 1].length_mm);
+	return err;
 }
 
 static int prepare(struct making *m)
@@ -430,6 +461,8 @@ int interp_limits_write(const struct interp_limits *l,
 	m.weakest_mm_s2 = m.weakest_mm_s3 = INFINITY;
 	for (uint32_t k = 0; k < m.axes.n; k++) {
 		m.tol[k] = sections_tolerance(l, p, k);
+		m.step_mm_s[k] = interp_axes_step_mm_s(&m.axes, k,
+						       l->corner_mm);
 		m.weakest_mm_s2 = pass_least(m.weakest_mm_s2,
 					     (float)m.axes.a_mm_s2[k]);
 		m.weakest_mm_s3 = pass_least(m.weakest_mm_s3,

@@ -5,19 +5,24 @@
 
 #include <math.h>
 
+double interp_axes_step_mm_s(const struct interp_axes *x, uint32_t k,
+			     double corner_mm)
+{
+	return smaller(sqrt(8 * x->a_mm_s2[k] * corner_mm),
+		       cbrt(36 * x->j_mm_s3[k] * corner_mm * corner_mm));
+}
+
 /* Each axis goes from one speed to the other, and from one acceleration to the
  * other, with its acceleration and its jerk, and is off by the corner. */
 static double by_steps_mm_s(const struct interp_axes *x, uint32_t k,
 			    const double turn[INTERP_AXES_WAY],
 			    double corner_mm)
 {
-	const double a = x->a_mm_s2[k], j = x->j_mm_s3[k];
+	const double j = x->j_mm_s3[k];
 	double v = INFINITY;
 
 	if (turn[0] != 0)
-		v = smaller(sqrt(8 * a * corner_mm),
-			    cbrt(36 * j * corner_mm * corner_mm)) /
-		    fabs(turn[0]);
+		v = interp_axes_step_mm_s(x, k, corner_mm) / fabs(turn[0]);
 	if (turn[1] != 0)
 		v = smaller(v, sqrt(cbrt(24 * corner_mm * j * j) /
 				    fabs(turn[1])));

@@ -56,6 +56,11 @@ struct interp_straight interp_axes_left(const struct interp_axes *x,
 					const double *way, double v_mm_s,
 					const struct interp_straight *kept);
 
+/** interp_axes_step_mm_s() - the greatest step that the speed of column @k may
+ *  make, so that its axis is off by @corner_mm at most. */
+double interp_axes_step_mm_s(const struct interp_axes *x, uint32_t k,
+			     double corner_mm);
+
 /**
  * interp_axes_corner_mm_s() - the greatest speed over a node at which the path
  * turns from the way @before to the way @behind.
