@@ -112,12 +112,43 @@ static size_t sharpest(const struct run *r, size_t from, size_t to,
 	return ret;
 }
 
+/* By how much column @k turns at node @i. */
+static double turn_of(const struct run *r, size_t i, uint32_t k)
+{
+	return i == 0 || i + 1 >= r->n ? 0 :
+	       slope(r, i, i + 1, k) - slope(r, i - 1, i, k);
+}
+
+/* Do the lines beside node @i show by themselves a turn that neither of their
+ * other ends goes on with, as a curve does? */
+static bool is_sharp(const struct run *r, size_t i)
+{
+	const double per_mm = 1 / (r->s_mm[i] - r->s_mm[i - 1]) +
+			      1 / (r->s_mm[i + 1] - r->s_mm[i]);
+
+	for (uint32_t k = 0; k < r->columns; k++) {
+		const double turn = turn_of(r, i, k);
+		const double rate = larger(fabs(slope(r, i - 1, i, k)),
+					   fabs(slope(r, i, i + 1, k)));
+		const double goes_on = larger(
+			turn_of(r, i - 1, k) / turn,
+			turn_of(r, i + 1, k) / turn);
+
+		if (fabs(turn) > CORNER * box_of(r, k, rate) * per_mm &&
+		    BESIDE * goes_on < 1)
+			return true;
+	}
+	return false;
+}
+
 static bool is_corner(const struct run *r, size_t i)
 {
 	const size_t last = r->n - 1;
 	const double turn = turn_at(r, i, 0, last);
 	struct chords c;
 
+	if (is_sharp(r, i))
+		return true;
 	if (turn <= 1)
 		return false;
 	c = chords_of(r, i, 0.95 * chord_mm(r), 0, last);
