@@ -2,8 +2,6 @@
 /* hops.c - which segment comes next that is slower, or softer */
 #include "speed/pass.h"
 
-#include "both.h"
-
 #include <string.h>
 
 #define HOP_MAX		UINT16_MAX
@@ -156,9 +154,8 @@ static inline void chain_alike(struct interp_seg *s, float v, float next)
 	s->slower_feed = feed ? hop_on(feed) : 0;
 }
 
-static void chain_ahead(void *arg)
+static void chain_ahead(const struct pass *w)
 {
-	const struct pass *w = arg;
 	struct interp_seg *s = w->segs;
 	const uint32_t end = w->end;
 	float next = 0;
@@ -179,9 +176,8 @@ static void chain_ahead(void *arg)
 	}
 }
 
-static void chain_behind(void *arg)
+static void chain_behind(const struct pass *w)
 {
-	const struct pass *w = arg;
 	struct interp_seg *s = w->segs;
 	const uint32_t end = w->end;
 	float before = back_into(s + 1);
@@ -200,10 +196,6 @@ static void chain_behind(void *arg)
 
 void pass_hops(struct pass *w)
 {
-	if (w->threads > 1) {
-		both(chain_ahead, chain_behind, w);
-		return;
-	}
 	chain_ahead(w);
 	chain_behind(w);
 }

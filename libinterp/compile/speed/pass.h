@@ -21,7 +21,6 @@ struct pass {
 	const struct interp_program *p;
 	struct interp_seg *segs;	/* of it, writable */
 	uint32_t end;			/* the last segment */
-	uint32_t threads;
 	double short_mm;		/* shorter lines stand for a curve */
 	double travel_a_mm_s2, travel_j_mm_s3;	/* of a positioning */
 	struct pass_soft soft;
@@ -36,6 +35,14 @@ static inline float pass_least(float a, float b)
 
 /** pass_levels() - one behind the other, what is nearly alike becomes alike. */
 void pass_levels(struct pass *w);
+
+/** pass_may_stand() - do segments allow so different things that a stand between
+ *  them may pay? */
+static inline bool pass_may_stand(const struct pass *w)
+{
+	return w->parts || w->soft.a_most >= 2 * w->soft.a_least ||
+	       w->soft.j_most >= 2 * w->soft.j_least;
+}
 
 /** pass_stretches() - flag the nodes at which a move stands, because the axes
  *  allow much less on one side. */

@@ -47,6 +47,7 @@ struct interp_axes sections_axes(const struct interp_limits *l,
 		ret.a_mm_s2[k] = m->a_max_mm_s2;
 		ret.j_mm_s3[k] = m->j_max_mm_s3;
 	}
+	interp_axes_round(&ret, l->corner_mm);
 	return ret;
 }
 
@@ -283,8 +284,7 @@ static void find_corners(struct making *m)
 
 			way_at_end(w, b, false, behind);
 			v = interp_axes_corner_mm_s(&m->axes, before, behind,
-						    a->along & b->along,
-						    m->l->corner_mm);
+						    a->along & b->along);
 			for (struct section *k = a; k < b; k++)
 				k->corner_mm_s = smaller(k->corner_mm_s, v);
 			mm += section_mm(w, b);

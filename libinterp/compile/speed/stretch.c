@@ -417,6 +417,6 @@ void pass_stretches(struct pass *pass)
 
 	if (pass->parts)
 		divide_parts(&w, pass->p->head->nsegs - 1);
-	else if (k->a_most >= k->a_least * 2 || k->j_most >= k->j_least * 2)
+	else
 		divide_all(&w, 0, pass->p->head->nsegs - 1);
 }

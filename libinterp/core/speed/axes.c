@@ -61,11 +61,10 @@ static double by_jerk_mm_s(const double *way,
 	return v;
 }
 
-double interp_axes_mm_s(const struct interp_axes *x, const double *way,
-			const struct interp_straight *kept)
+/* Where they leave @go. */
+static double speed_of(const struct interp_axes *x, const double *way,
+		       const struct interp_straight *go)
 {
-	const struct interp_straight s = interp_axes_straight(x, way);
-	const struct interp_straight go = keep(&s, kept);
 	double v = INFINITY;
 
 	for (uint32_t k = 0; k < x->n; k++) {
@@ -77,14 +76,14 @@ double interp_axes_mm_s(const struct interp_axes *x, const double *way,
 	for (uint32_t k = 0; k < x->n; k++, way += INTERP_AXES_WAY) {
 		const double by = fabs(way[0]);
 		const double a = x->a_mm_s2[k] -
-				 (by > 0 ? by * go.a_mm_s2 : 0);
+				 (by > 0 ? by * go->a_mm_s2 : 0);
 		const double j = x->j_mm_s3[k] -
-				 (by > 0 ? by * go.j_mm_s3 : 0);
+				 (by > 0 ? by * go->j_mm_s3 : 0);
 
 		if (fabs(way[1]) * v * v > a)
 			v = sqrt(a / fabs(way[1]));
 		if (way[1] != 0 || way[2] != 0)
-			v = by_jerk_mm_s(way, &go, j, v);
+			v = by_jerk_mm_s(way, go, j, v);
 	}
 	return v;
 }
@@ -109,29 +108,29 @@ static void leave(const struct interp_axes *x, uint32_t k, const double *way,
 		ret->j_mm_s3 = smaller(ret->j_mm_s3, go->j_mm_s3);
 }
 
-struct interp_straight interp_axes_left(const struct interp_axes *x,
-					const double *way, double v_mm_s,
-					const struct interp_straight *kept)
+double interp_axes_mm_s(const struct interp_axes *x, const double *way,
+			const struct interp_straight *kept,
+			struct interp_straight *ret_left)
 {
 	const struct interp_straight s = interp_axes_straight(x, way);
 	const struct interp_straight go = keep(&s, kept);
-	struct interp_straight ret = s;
-	const double v = v_mm_s;
+	const double v = speed_of(x, way, &go);
 	double a;
 
+	*ret_left = s;
 	for (uint32_t k = 0; k < x->n; k++)
-		leave(x, k, way + k * INTERP_AXES_WAY, v, &go, &ret);
-	ret.a_mm_s2 = larger(ret.a_mm_s2, go.a_mm_s2);
-	a = smaller(ret.a_mm_s2, comes_to_mm_s2(&ret, v));
+		leave(x, k, way + k * INTERP_AXES_WAY, v, &go, ret_left);
+	ret_left->a_mm_s2 = larger(ret_left->a_mm_s2, go.a_mm_s2);
+	a = smaller(ret_left->a_mm_s2, comes_to_mm_s2(ret_left, v));
 	for (uint32_t k = 0; k < x->n; k++, way += INTERP_AXES_WAY) {
 		const double by = fabs(way[0]);
 		const double j = x->j_mm_s3[k] -
 				 (fabs(way[2]) * v * v +
 				  3 * fabs(way[1]) * a) * v;
 
-		if (by * ret.j_mm_s3 > j)
-			ret.j_mm_s3 = j / by;
+		if (by * ret_left->j_mm_s3 > j)
+			ret_left->j_mm_s3 = j / by;
 	}
-	ret.j_mm_s3 = larger(ret.j_mm_s3, go.j_mm_s3);
-	return ret;
+	ret_left->j_mm_s3 = larger(ret_left->j_mm_s3, go.j_mm_s3);
+	return v;
 }

@@ -5,28 +5,17 @@
 
 #include <math.h>
 
-double interp_axes_step_mm_s(const struct interp_axes *x, uint32_t k,
-			     double corner_mm)
+void interp_axes_round(struct interp_axes *x, double corner_mm)
 {
-	return smaller(sqrt(8 * x->a_mm_s2[k] * corner_mm),
-		       cbrt(36 * x->j_mm_s3[k] * corner_mm * corner_mm));
-}
+	const double c = corner_mm;
 
-/* Each axis goes from one speed to the other, and from one acceleration to the
- * other, with its acceleration and its jerk, and is off by the corner. */
-static double by_steps_mm_s(const struct interp_axes *x, uint32_t k,
-			    const double turn[INTERP_AXES_WAY],
-			    double corner_mm)
-{
-	const double j = x->j_mm_s3[k];
-	double v = INFINITY;
+	x->corner_mm = c;
+	for (uint32_t k = 0; k < x->n; k++) {
+		const double a = x->a_mm_s2[k], j = x->j_mm_s3[k];
 
-	if (turn[0] != 0)
-		v = interp_axes_step_mm_s(x, k, corner_mm) / fabs(turn[0]);
-	if (turn[1] != 0)
-		v = smaller(v, sqrt(cbrt(24 * corner_mm * j * j) /
-				    fabs(turn[1])));
-	return v;
+		x->step_mm_s[k] = smaller(sqrt(8 * a * c), cbrt(36 * j * c * c));
+		x->step_mm_s2[k] = cbrt(24 * c * j * j);
+	}
 }
 
 /* Of two columns together: what they go by in a mm, and the turn between. */
@@ -47,19 +36,22 @@ static double radius_mm(const struct bow *b, double corner_mm)
 
 double interp_axes_corner_mm_s(const struct interp_axes *x,
 			       const double *before, const double *behind,
-			       uint32_t along, double corner_mm)
+			       uint32_t along)
 {
 	struct interp_straight across = { INFINITY, INFINITY };
-	double v = INFINITY, r, turn[INTERP_AXES_WAY];
+	double v = INFINITY, r, turn[2];
 	struct bow bow = { 0, 0, 0, 0 };
 
 	for (uint32_t k = 0; k < x->n; k++) {
 		const double *a = before + k * INTERP_AXES_WAY;
 		const double *b = behind + k * INTERP_AXES_WAY;
 
-		for (int i = 0; i < INTERP_AXES_WAY; i++)
+		for (int i = 0; i < 2; i++)
 			turn[i] = b[i] - a[i];
-		v = smaller(v, by_steps_mm_s(x, k, turn, corner_mm));
+		if (fabs(turn[0]) * v > x->step_mm_s[k])
+			v = x->step_mm_s[k] / fabs(turn[0]);
+		if (fabs(turn[1]) * v * v > x->step_mm_s2[k])
+			v = sqrt(x->step_mm_s2[k] / fabs(turn[1]));
 		if (!(along >> k & 1))
 			continue;
 		bow.before += a[0] * a[0];
@@ -71,7 +63,7 @@ double interp_axes_corner_mm_s(const struct interp_axes *x,
 		across.j_mm_s3 = smaller(across.j_mm_s3,
 					 x->j_mm_s3[k] / fabs(turn[0]));
 	}
-	r = radius_mm(&bow, corner_mm);
+	r = radius_mm(&bow, x->corner_mm);
 	if (!(bow.turn > 0) || isinf(r))
 		return v;
 	return smaller(v, smaller(sqrt(across.a_mm_s2 * sqrt(bow.turn) * r),

@@ -30,6 +30,10 @@ struct interp_axes {
 	double v_mm_s[INTERP_NAXES];
 	double a_mm_s2[INTERP_NAXES];
 	double j_mm_s3[INTERP_NAXES];
+	/* Written by interp_axes_round(): */
+	double corner_mm;
+	double step_mm_s[INTERP_NAXES];	/* the greatest step of its speed */
+	double step_mm_s2[INTERP_NAXES];	/* of its acceleration */
 };
 
 /* Along a path that does not bend. */
@@ -44,33 +48,30 @@ struct interp_straight interp_axes_straight(const struct interp_axes *x,
  * is there to speed up and to brake. */
 #define INTERP_AXES_KEPT	0.9
 
-/** interp_axes_mm_s() - the greatest speed at a place, at which the axes leave
- *  @kept for going along, or most of what they can do. */
+/**
+ * interp_axes_mm_s() - the greatest speed at a place, at which the axes leave
+ * @kept for going along, or most of what they can do.
+ *
+ * @ret_left: what they leave at that speed, or slower, to either side.  It is no
+ *	      less than @kept.
+ */
 double interp_axes_mm_s(const struct interp_axes *x, const double *way,
-			const struct interp_straight *kept);
+			const struct interp_straight *kept,
+			struct interp_straight *ret_left);
 
-/** interp_axes_left() - what the axes leave for going along at @v_mm_s, or
- *  slower, to either side.  At the speed of interp_axes_mm_s() that is no less than
- *  @kept. */
-struct interp_straight interp_axes_left(const struct interp_axes *x,
-					const double *way, double v_mm_s,
-					const struct interp_straight *kept);
-
-/** interp_axes_step_mm_s() - the greatest step that the speed of column @k may
- *  make, so that its axis is off by @corner_mm at most. */
-double interp_axes_step_mm_s(const struct interp_axes *x, uint32_t k,
-			     double corner_mm);
+/** interp_axes_round() - each axis may be off by @corner_mm, in its own unit. */
+void interp_axes_round(struct interp_axes *x, double corner_mm);
 
 /**
  * interp_axes_corner_mm_s() - the greatest speed over a node at which the path
  * turns from the way @before to the way @behind.
  *
- * Each axis changes its speed and its acceleration within @corner_mm, and
- * @along, a bit for each column that makes the length, turn as an arc that is
- * so far from the node.
+ * Each axis changes its speed and its acceleration so fast that it is off by no
+ * more than it may be.  @along, a bit for each column that makes the length,
+ * turn as an arc that is so far from the node.
  */
 double interp_axes_corner_mm_s(const struct interp_axes *x,
 			       const double *before, const double *behind,
-			       uint32_t along, double corner_mm);
+			       uint32_t along);
 
 #endif /* INTERP_AXES_H */
