@@ -23,9 +23,10 @@
 #define SMALL_JERK	2.1
 #define SMALL_DEG	0.2
 
-/* At a node an axis may step by 2.6 deg/s (corner_um); in a cycle it speeds up
- * by 1 deg/s more. */
-#define CORNER_JOLT	3.6
+/* At a node an axis may step by 2.6 deg/s (corner_um), and by no more than that
+ * again what a rounding of the lines hides; in a cycle it speeds up by 1 deg/s
+ * more. */
+#define CORNER_JOLT	6.2
 
 struct dense {
 	double mm;			/* of a line */
@@ -523,7 +524,8 @@ static int turned_back(double mm, double turn, double back)
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 	const int there = (int)lround((1 + back) / mm);
 	const int n = there + (int)lround(back / mm);
-	const double most = 1.05 * slowest(1, M_PI, 0);
+	/* Of a line of 20 um, a rounding of its ends is a tenth. */
+	const double most = 1.12 * slowest(1, M_PI, 0);
 	double end[INTERP_NAXES] = { 0 };
 	struct made m;
 	int ret = 0;
