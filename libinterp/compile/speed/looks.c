@@ -2,8 +2,8 @@
 /* looks.c - what the axes do along each segment of a program */
 #include "speed/looks.h"
 
-#include "speed/heading.h"
 #include "speed/sections.h"
+#include "speed/ways.h"
 
 #include "interp/smaller.h"
 
@@ -36,14 +36,11 @@ struct rate {
 
 static struct rate rate_of(const struct making *m, uint32_t i, uint32_t k)
 {
-	const struct interp_program *p = m->to->p;
-	const uint32_t n = p->head->naxes;
-	const int64_t *a = p->nodes + (uint64_t)i * n + k;
-	const double per_mm = 1 / p->segs[i].length_mm;
-	const double by = (double)(a[n] - a[0]) * m->ways.sub_mm[k] * per_mm;
+	const double by = ways_rate(&m->ways, i, k);
 	const double size = smaller(larger(fabs(by), 1), RATE_MOST);
 
-	return (struct rate) { by, m->tol[k] * (1 + size) * per_mm };
+	return (struct rate) { by, m->tol[k] * (1 + size) /
+				   m->to->p->segs[i].length_mm };
 }
 
 /* How fast the axes of line @i are at most.  INFINITY: it is a rounding. */
@@ -219,7 +216,7 @@ int looks_make(struct look_all *ret, const struct interp_limits *l,
 	};
 	if (!ret->of)
 		return -ENOMEM;
-	heading_ways_init(&m.ways, p);
+	ways_init(&m.ways, p);
 	for (uint32_t k = 0; k < ret->axes.n; k++)
 		m.tol[k] = sections_tolerance(l, p, k);
 	for (uint32_t i = 0; i < p->head->nsegs; i++) {

@@ -8,7 +8,7 @@
 #ifndef SPEED_LOOKS_H
 #define SPEED_LOOKS_H
 
-#include "interp/axes.h"
+#include "speed/axes.h"
 #include "interp/limits.h"
 
 #include <stdbool.h>

@@ -2,7 +2,7 @@
 /* run.c - runs of short lines, cut at their corners */
 #include "speed/run.h"
 
-#include "interp/axes.h"
+#include "speed/axes.h"
 #include "interp/smaller.h"
 
 #include "grow.h"

@@ -2,7 +2,7 @@
 /* sections.c - a program's way in sections */
 #include "speed/sections.h"
 
-#include "speed/heading.h"
+#include "speed/ways.h"
 #include "speed/run.h"
 
 #include "interp/at.h"
@@ -90,7 +90,7 @@ static void of_arc(const struct interp_program *p, const struct interp_arc *a,
 				  side * M_PI / 2;
 		const double c = cos(at), s = sin(at);
 		double *way = ret + INTERP_AXES_WAY *
-			      heading_column(p, side ? a->axis_b : a->axis_a);
+			      ways_column(p, side ? a->axis_b : a->axis_a);
 
 		way[0] = out * c - r * w * s;
 		way[1] = -r * w * w * c - 2 * out * w * s;
@@ -122,7 +122,7 @@ static void of_curve(struct sections *w, const struct interp_seg *s, double part
 	interp_nurbs_way(&w->curve.eval, interp_nurbs_between_at(&between,
 								 s_mm), &way_at);
 	for (uint32_t j = 0; !way_at.cusp && j < w->curve.eval.c.naxes; j++) {
-		double *way = ret + INTERP_AXES_WAY * heading_column(
+		double *way = ret + INTERP_AXES_WAY * ways_column(
 			p, p->curves[piece->curve].axis[j]);
 
 		for (int i = 0; i < INTERP_AXES_WAY; i++)
@@ -158,14 +158,6 @@ void sections_way(struct sections *w, const struct section *s, double s_mm,
 
 /* -- Sections -------------------------------------------------------------- */
 
-static uint32_t along_of(const struct making *m, uint32_t seg)
-{
-	struct headings h;
-
-	heading_of(&m->ways, seg, &h);
-	return h.first.along;
-}
-
 static int add(struct making *m, uint32_t from, uint32_t to,
 	       struct run_part *part)
 {
@@ -176,7 +168,7 @@ static int add(struct making *m, uint32_t from, uint32_t to,
 		return -ENOMEM;
 	k->at[k->n++] = (struct section) { .from = from, .to = to,
 					   .part = part,
-					   .along = along_of(m, from),
+					   .along = ways_along(&m->ways, from),
 					   .corner_mm_s = INFINITY };
 	return 0;
 }
@@ -208,13 +200,13 @@ static bool is_short(const struct making *m, uint32_t i)
  * columns. */
 static uint32_t run_end(const struct making *m, uint32_t i, uint32_t to)
 {
-	struct heading_run run = heading_run(&m->ways, i);
-	uint32_t end = i;
+	const uint32_t along = ways_along(&m->ways, i);
+	uint32_t end = i + 1;
 
-	while (end < to && is_short(m, end))
+	while (end < to && is_short(m, end) &&
+	       ways_along(&m->ways, end) == along)
 		end++;
-	heading_run_on(&m->ways, &run, end);
-	return run.at < end ? run.at : end;
+	return end;
 }
 
 static int add_run(struct making *m, uint32_t from, uint32_t to)
@@ -224,7 +216,7 @@ static int add_run(struct making *m, uint32_t from, uint32_t to)
 	double *s = malloc(nodes * sizeof(*s));
 	double *x = malloc(nodes * n * sizeof(*x));
 	struct run r = { .n = nodes, .columns = n,
-			 .along = along_of(m, from), .s_mm = s, .x = x,
+			 .along = ways_along(&m->ways, from), .s_mm = s, .x = x,
 			 .corner_mm = m->l->corner_mm };
 	int err = s && x ? 0 : -ENOMEM;
 
@@ -301,7 +293,7 @@ int sections_make(struct sections *ret, const struct interp_limits *l,
 	int err = 0;
 
 	*ret = (struct sections) { .p = p };
-	heading_ways_init(&m.ways, p);
+	ways_init(&m.ways, p);
 	for (uint32_t i = 1, end; err == 0 && i + 1 < p->head->nsegs; i = end) {
 		end = i + 1;
 		if (p->segs[i].kind >= INTERP_BEGIN)

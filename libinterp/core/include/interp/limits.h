@@ -6,44 +6,43 @@
  * out.  With each one stands where the next slower one is.  Whoever looks ahead
  * follows these alone, so his work does not grow with the number of segments.
  *
- * A node that turns by the angle phi is treated as an arc of radius R that
- * passes the corner at a distance of corner_mm (junction deviation).  R is not
- * taken smaller than corner_mm:
+ * A place of the path has three derivatives of each column by the mm of path,
+ * r1, r2 and r3.  With the speed v, the acceleration a and the jerk j along the
+ * path a column asks its axis for
+ *
+ *	r1 v,    r1 a + r2 v^2    and    r1 j + 3 r2 v a + r3 v^3
+ *
+ * That is so for lines, arcs, two contours and curves.  Lines shorter than 100
+ * corner_mm stand for a curve: the smoothest one that keeps within a rounding of
+ * their ends.  A move has the least acceleration and jerk of its way.  What of
+ * its axes it keeps for them, and what is left for bends, is chosen so that the
+ * move takes the least time.
+ *
+ * At a node each axis makes a step of its speed, and where a line becomes an arc
+ * one of its acceleration.  They are so small that the axis is off by no more
+ * than corner_mm, in its own unit:
+ *
+ *	step of v <= sqrt(8*a*corner), step of v <= cbrt(36*j*corner^2)
+ *	step of a <= cbrt(24*j^2*corner)
+ *
+ * The axes that make the length turn at a node by the angle phi as an arc that
+ * passes the corner at a distance of corner_mm.  R is not taken smaller than
+ * corner_mm:
  *
  *	R = corner * cos(phi/2) / (1 - cos(phi/2))
  *	v <= sqrt(a*R), v <= cbrt(j*R*R)
  *
- * where a and j are the acceleration and the jerk that the axes can give in the
- * directions they have there.  A programmed arc is limited in the same way by
- * its own radius.  An axis that does not count in the length of the path (a
- * rotary axis beside X Y Z) changes its speed in a step at a node.  The step is
- * limited by the same corner_mm, in the axis's own unit:
- *
- *	step <= sqrt(8*a*corner), step <= cbrt(j*(6*corner)^2)
- *
- * A node on a straight line slows nothing down.  Lines shorter than 100
- * corner_mm, and 500 tolerance_mm, are also limited by the radius of the curve
- * that they follow.  That radius is found from the chords of 20 corner_mm on
- * both sides of a node, or 100 tolerance_mm if that is more, and is not taken
- * smaller than corner_mm.  An axis beside the path has the
- * acceleration by which its share changes over those chords, and the jerk by
- * which that differs from the chords before and behind.  a_mm_s2 and j_mm_s3
- * leave it what it needs for that.
- *
- * Rounding the nodes by tolerance_mm, or by a pulse, must not change the speed.
- * So turns and steps of lines shorter than 20 tolerances are taken over chords
- * of that length, and what could come from rounding is taken off.  To find what
- * that takes off a real curve, chords up to 32 times as long are looked at.
+ * What a rounding by tolerance_mm, or by a pulse, can make of a turn does not
+ * count.  A node on a straight line slows nothing down.
  *
  * No segment of many points is faster than the machine makes them.
  *
- * The speeds are rounded down to levels that are at most 1/32 apart (the top
- * speeds of the axes are levels too).  So at most a few hundred of them can
- * follow each other with each slower than the one before.
+ * Speeds, accelerations and jerks one behind the other that are nearly alike
+ * become the least of them.  So at most a few hundred can follow each other with
+ * each less than the one before.
  *
- * A move keeps the least acceleration and jerk of its way.  Where that would
- * take much longer, INTERP_SEG_STAND cuts the way in two
- * (compile/speed/stretch.c).
+ * Where the least of a whole way would take much longer, INTERP_SEG_STAND cuts
+ * the way in two (compile/speed/stretch.c).
  *
  * Units: in every name.
  */
@@ -58,16 +57,10 @@
 #define INTERP_TOLERANCE_MM	0.001
 #define INTERP_ROTARY_MM	57.3	/* there 0.001 mm is 0.001 degrees */
 
-/*
- * On a bend, shares of an axis's acceleration: to follow it at most, and to go
- * along it at least.  Square to each other, together they are no more than all
- * of it.  What the bend does not need at its speed is left for going along it.
- */
+/* Where a curve is cut: of an axis's acceleration, what may follow a bend. */
 #define INTERP_BEND_ACROSS	0.8
-#define INTERP_BEND_ALONG	0.6
-/* Of an axis beside the path they point one way. */
+/* Of an axis beside the path. */
 #define INTERP_BESIDE_ACROSS	0.6
-#define INTERP_BESIDE_ALONG	0.4
 /* The same of its jerk: what the change of a bend may take, if that is no
  * corner.  The rest is for going along. */
 #define INTERP_BESIDE_JERK_ROUND	0.5
@@ -87,7 +80,6 @@
  * speed, because a move may brake with all of its acceleration where it comes
  * to a bend at its ceiling.
  */
-#define INTERP_ARC_JERK_ROUND	0.3
 #define INTERP_ARC_JERK_BOTH	0.66
 #define INTERP_CURVE_JERK_ROUND	0.2
 #define INTERP_CURVE_JERK_BOTH	0.4

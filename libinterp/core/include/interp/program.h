@@ -392,26 +392,6 @@ bool interp_program_curve(const struct interp_program *p, uint32_t i,
 			  struct interp_nurbs *ret);
 
 /**
- * interp_program_curve_rate() - the direction in which a segment of kind
- * INTERP_CURVE begins, or with @at_end ends: @ret[j] is how far node column j
- * goes per mm of path.
- *
- * At a cusp it is the direction on this segment's side.  Any thread, but not
- * for the cycle.  Return: false if the segment is damaged.
- */
-bool interp_program_curve_rate(const struct interp_program *p,
-			       const struct interp_seg *seg, bool at_end,
-			       double ret[INTERP_NAXES]);
-
-/**
- * interp_program_curve_bend() - the same of its bend: how that direction
- * changes per mm of path.
- */
-bool interp_program_curve_bend(const struct interp_program *p,
-			       const struct interp_seg *seg, bool at_end,
-			       double ret[INTERP_NAXES]);
-
-/**
  * interp_strategy_name() - "simultaneous", ...; NULL if unknown. Any thread.
  */
 const char *interp_strategy_name(enum interp_strategy s);

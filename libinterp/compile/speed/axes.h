@@ -17,8 +17,8 @@
  * Units: in every name.
  * Threads: RT-safe.
  */
-#ifndef INTERP_AXES_H
-#define INTERP_AXES_H
+#ifndef SPEED_AXES_H
+#define SPEED_AXES_H
 
 #include "interp/axis.h"
 
@@ -74,4 +74,4 @@ double interp_axes_corner_mm_s(const struct interp_axes *x,
 			       const double *before, const double *behind,
 			       uint32_t along);
 
-#endif /* INTERP_AXES_H */
+#endif /* SPEED_AXES_H */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* axes.c - how fast axes can follow a path */
-#include "interp/axes.h"
+#include "speed/axes.h"
 #include "interp/smaller.h"
 
 #include <math.h>

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * ways.h - the columns of a program, and which of them make its length
+ *
+ * Private to libinterp/compile/speed.
+ */
+#ifndef SPEED_WAYS_H
+#define SPEED_WAYS_H
+
+#include "interp/program.h"
+
+/* A program, and what is the same for all of its segments. */
+struct ways {
+	const struct interp_program *p;
+	uint32_t xyz, uv;		/* columns */
+	double sub_mm[INTERP_NAXES];	/* mm per subpulse of each column */
+};
+
+void ways_init(struct ways *w, const struct interp_program *p);
+
+/** ways_column() - the column of @axis, which the program moves. */
+uint32_t ways_column(const struct interp_program *p, uint32_t axis);
+
+/** ways_rate() - mm of column @k in a mm of segment @i, from node to node. */
+static inline double ways_rate(const struct ways *w, uint32_t i, uint32_t k)
+{
+	const uint32_t n = w->p->head->naxes;
+	const int64_t *a = w->p->nodes + (uint64_t)i * n + k;
+
+	return (double)(a[n] - a[0]) * w->sub_mm[k] /
+	       w->p->segs[i].length_mm;
+}
+
+/** ways_along() - the columns that make the length of segment @i, which must
+ *  move. */
+uint32_t ways_along(const struct ways *w, uint32_t i);
+
+#endif /* SPEED_WAYS_H */
