@@ -24,6 +24,7 @@ struct making {
 	struct sections sections;
 	struct ways ways;
 	double tol[INTERP_NAXES];	/* of each column */
+	double pulse_mm;		/* the finest */
 };
 
 /* -- Lines ----------------------------------------------------------------- */
@@ -83,6 +84,17 @@ static float least(float a, double b)
 	return (double)a < b ? a : (float)b;
 }
 
+/* The axes do not notice a bend of a curve whose radius is less than a pulse. */
+static void overlook(const struct making *m, double *way)
+{
+	const double most = 1 / m->pulse_mm;
+
+	for (uint32_t k = 0; k < m->to->axes.n; k++, way += INTERP_AXES_WAY) {
+		way[1] = larger(smaller(way[1], most), -most);
+		way[2] = larger(smaller(way[2], most * most), -most * most);
+	}
+}
+
 static int look(struct making *m, const struct section *s, double s_mm,
 		struct looks *of)
 {
@@ -96,6 +108,8 @@ static int look(struct making *m, const struct section *s, double s_mm,
 	    grow_array(&to->way, &to->room, each * sizeof(float)) < 0)
 		return -ENOMEM;
 	sections_way(&m->sections, s, s_mm, way);
+	if (to->p->segs[s->from].kind == INTERP_CURVE)
+		overlook(m, way);
 	straight = interp_axes_straight(&to->axes, way);
 	of->a_mm_s2 = least(of->a_mm_s2, straight.a_mm_s2);
 	of->j_mm_s3 = least(of->j_mm_s3, straight.j_mm_s3);
@@ -134,6 +148,27 @@ static int look_at_seg(struct making *m, const struct section *s)
 	return err;
 }
 
+/* Of a line of a run: by the mean of what its shape goes by, and by what it goes
+ * by itself for sure. */
+static void bound(struct making *m, uint32_t i)
+{
+	struct look_all *to = m->to;
+	struct looks *k = &to->of[i];
+	const size_t each = to->axes.n * INTERP_AXES_WAY;
+	const float *a = to->way + k->at * each, *b = a + each;
+	double v = axes_mm_s(m, i);
+
+	for (uint32_t j = 0; j < to->axes.n; j++) {
+		const double by = fabs((double)(a[j * INTERP_AXES_WAY] +
+						b[j * INTERP_AXES_WAY])) / 2;
+
+		if (by * v > to->axes.v_mm_s[j])
+			v = to->axes.v_mm_s[j] / by;
+	}
+	if (v < INFINITY && !(to->p->segs[i].flags & INTERP_SEG_KNOWN))
+		k->own_mm_s = (float)v;
+}
+
 /* The look between two lines belongs to both. */
 static int look_at_run(struct making *m, const struct section *s)
 {
@@ -142,7 +177,6 @@ static int look_at_run(struct making *m, const struct section *s)
 
 	for (uint32_t i = s->from; err == 0 && i < s->to; i++) {
 		struct looks *k = &m->to->of[i];
-		const double v = axes_mm_s(m, i);
 
 		k->at = (uint32_t)m->to->n;
 		k->n = 2;
@@ -150,8 +184,6 @@ static int look_at_run(struct making *m, const struct section *s)
 		k->goes_on = i + 1 < s->to;
 		if (k->goes_on)
 			k->node_mm_s = (float)step_mm_s(m, i);
-		if (v < INFINITY && !(segs[i].flags & INTERP_SEG_KNOWN))
-			k->own_mm_s = (float)v;
 		err = look(m, s, segs[i].s_mm, k);
 		if (i > s->from) {
 			k[-1].a_mm_s2 = least(k[-1].a_mm_s2,
@@ -160,9 +192,13 @@ static int look_at_run(struct making *m, const struct section *s)
 					      (double)k->j_mm_s3);
 		}
 	}
-	return err < 0 ? err :
-	       look(m, s, segs[s->to - 1].s_mm + segs[s->to - 1].length_mm,
-		    &m->to->of[s->to - 1]);
+	if (err == 0)
+		err = look(m, s, segs[s->to - 1].s_mm +
+				 segs[s->to - 1].length_mm,
+			   &m->to->of[s->to - 1]);
+	for (uint32_t i = s->from; err == 0 && i < s->to; i++)
+		bound(m, i);
+	return err;
 }
 
 /* Over actions, too; but these end a part anyway. */
@@ -217,8 +253,12 @@ int looks_make(struct look_all *ret, const struct interp_limits *l,
 	if (!ret->of)
 		return -ENOMEM;
 	ways_init(&m.ways, p);
-	for (uint32_t k = 0; k < ret->axes.n; k++)
+	m.pulse_mm = INFINITY;
+	for (uint32_t k = 0; k < ret->axes.n; k++) {
 		m.tol[k] = sections_tolerance(l, p, k);
+		m.pulse_mm = smaller(m.pulse_mm,
+				     p->head->pulse_mm[p->head->column[k]]);
+	}
 	for (uint32_t i = 0; i < p->head->nsegs; i++) {
 		ret->of[i].own_mm_s = p->segs[i].feed_max_mm_s;
 		ret->of[i].node_mm_s = INFINITY;
