@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* corner.c - how fast a node may be passed at which a path turns */
-#include "speed/axes.h"
+#include "speed/along.h"
 #include "interp/smaller.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 #ifndef SPEED_LOOKS_H
 #define SPEED_LOOKS_H
 
-#include "speed/axes.h"
+#include "speed/along.h"
 #include "interp/limits.h"
 
 #include <stdbool.h>
@@ -34,7 +34,7 @@ struct look_all {
 	struct interp_axes axes;
 	struct looks *of;		/* of each segment */
 	size_t n, room;
-	float *way;			/* of each look, as interp/axes.h */
+	float *way;			/* of each look, as speed/along.h */
 };
 
 /**

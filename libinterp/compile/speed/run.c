@@ -2,7 +2,7 @@
 /* run.c - runs of short lines, cut at their corners */
 #include "speed/run.h"
 
-#include "speed/axes.h"
+#include "speed/along.h"
 #include "interp/smaller.h"
 
 #include "grow.h"
@@ -420,7 +420,7 @@ static int find_corners(const struct run *r, struct ends *e)
 	return err;
 }
 
-int run_parts(const struct run *r,
+int sections_parts(const struct run *r,
 	      int (*found)(void *to, struct run_part *p), void *to)
 {
 	struct ends ends = { NULL, 0, 0 };
@@ -446,7 +446,7 @@ int run_parts(const struct run *r,
 	return err;
 }
 
-void run_part_way(const struct run_part *p, double s_mm, double *ret)
+void sections_part_way(const struct run_part *p, double s_mm, double *ret)
 {
 	if (p->shape.n > 0) {
 		shape_way(&p->shape, s_mm, ret);

@@ -33,16 +33,16 @@ struct run_part {
 	double straight[INTERP_NAXES];	/* r' then */
 };
 
-/** run_part_way() - r', r'' and r''' at @s_mm. */
-void run_part_way(const struct run_part *p, double s_mm, double *ret);
+/** sections_part_way() - r', r'' and r''' at @s_mm. */
+void sections_part_way(const struct run_part *p, double s_mm, double *ret);
 
 /**
- * run_parts() - call @found for one part after the other.  The part lasts for
+ * sections_parts() - call @found for one part after the other.  The part lasts for
  * the call; who takes its shape leaves an empty one there.
  *
  * Return: 0, -ENOMEM, or what @found returned that is no 0.
  */
-int run_parts(const struct run *r,
+int sections_parts(const struct run *r,
 	      int (*found)(void *to, struct run_part *p), void *to);
 
 #endif /* SPEED_RUN_H */

@@ -151,7 +151,7 @@ void sections_way(struct sections *w, const struct section *s, double s_mm,
 		  double *ret)
 {
 	if (s->part)
-		run_part_way(s->part, s_mm, ret);
+		sections_part_way(s->part, s_mm, ret);
 	else
 		seg_way(w, s->from, s_mm, ret);
 }
@@ -234,7 +234,7 @@ static int add_run(struct making *m, uint32_t from, uint32_t to)
 	m->run = &r;
 	m->seg = from;
 	if (err == 0)
-		err = run_parts(&r, add_part, m);
+		err = sections_parts(&r, add_part, m);
 	free(s);
 	free(x);
 	return err;

@@ -12,7 +12,7 @@
 #define SPEED_SECTIONS_H
 
 #include "interp/at.h"
-#include "speed/axes.h"
+#include "speed/along.h"
 #include "interp/limits.h"
 #include "interp/program.h"
 

@@ -359,9 +359,7 @@ static void derivatives(const double c[ORDER], double u, double ret[4])
 	}
 }
 
-/* @n of them from the @first one on, of each column. */
-static void at(const struct shape *f, double s_mm, int first, int n,
-	       double *ret)
+void shape_way(const struct shape *f, double s_mm, double *ret)
 {
 	const size_t k = interval_at(f, s_mm);
 	const double h = begin_mm(f, k + 1) - begin_mm(f, k);
@@ -369,21 +367,12 @@ static void at(const struct shape *f, double s_mm, int first, int n,
 
 	basis_of(f, k, &b);
 	for (uint32_t j = 0; j < f->columns; j++) {
-		double c[ORDER], d[4], by = first > 0 ? 1 / h : 1;
+		double c[ORDER], d[4];
 
 		column_of(f, k, &b, j, c);
 		derivatives(c, (s_mm - begin_mm(f, k)) / h, d);
-		for (int i = first; i < first + n; i++, by /= h)
-			*ret++ = d[i] * by;
+		*ret++ = d[1] / h;
+		*ret++ = d[2] / (h * h);
+		*ret++ = d[3] / (h * h * h);
 	}
-}
-
-void shape_way(const struct shape *f, double s_mm, double *ret)
-{
-	at(f, s_mm, 1, 3, ret);
-}
-
-void shape_place(const struct shape *f, double s_mm, double *ret)
-{
-	at(f, s_mm, 0, 1, ret);
 }

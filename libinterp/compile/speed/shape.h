@@ -45,12 +45,9 @@ struct shape {
 int shape_fit(const struct shape_points *p, struct shape *ret,
 	      size_t *ret_corner);
 
-/** shape_way() - r', r'' and r''' of each column at @s_mm, as interp/axes.h
+/** shape_way() - r', r'' and r''' of each column at @s_mm, as speed/along.h
  *  takes them. */
 void shape_way(const struct shape *f, double s_mm, double *ret);
-
-/** shape_place() - where it is there. */
-void shape_place(const struct shape *f, double s_mm, double *ret);
 
 void shape_free(struct shape *f);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * axes.h - how fast axes can follow a path, one formula for every move
+ * along.h - how fast axes can follow a path, one formula for every move
  *
  * A place of a path has three derivatives of each column by the mm of path,
  * r', r'' and r'''.  With the speed v, the acceleration a and the jerk j along
@@ -17,8 +17,8 @@
  * Units: in every name.
  * Threads: RT-safe.
  */
-#ifndef SPEED_AXES_H
-#define SPEED_AXES_H
+#ifndef SPEED_ALONG_H
+#define SPEED_ALONG_H
 
 #include "interp/axis.h"
 
@@ -74,4 +74,4 @@ double interp_axes_corner_mm_s(const struct interp_axes *x,
 			       const double *before, const double *behind,
 			       uint32_t along);
 
-#endif /* SPEED_AXES_H */
+#endif /* SPEED_ALONG_H */

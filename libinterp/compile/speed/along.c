@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* axes.c - how fast axes can follow a path */
-#include "speed/axes.h"
+/* along.c - how fast axes can follow a path */
+#include "speed/along.h"
 #include "interp/smaller.h"
 
 #include <math.h>
@@ -88,12 +88,20 @@ static double speed_of(const struct interp_axes *x, const double *way,
 	return v;
 }
 
+/* A motion that has a speed, and keeps something for going along. */
+struct motion {
+	const struct interp_axes *x;
+	struct interp_straight go;
+	double v_mm_s;
+};
+
 /* What column @k leaves beside its bend. */
-static void leave(const struct interp_axes *x, uint32_t k, const double *way,
-		  double v, const struct interp_straight *go,
+static void leave(const struct motion *m, uint32_t k, const double *way,
 		  struct interp_straight *ret)
 {
-	const double by = fabs(way[0]), bend = fabs(way[1]);
+	const struct interp_straight *go = &m->go;
+	const struct interp_axes *x = m->x;
+	const double by = fabs(way[0]), bend = fabs(way[1]), v = m->v_mm_s;
 	const double a = x->a_mm_s2[k] - bend * v * v;
 	const double j = x->j_mm_s3[k] - fabs(way[2]) * v * v * v -
 			 (by > 0 ? by * go->j_mm_s3 : 0);
@@ -115,11 +123,12 @@ double interp_axes_mm_s(const struct interp_axes *x, const double *way,
 	const struct interp_straight s = interp_axes_straight(x, way);
 	const struct interp_straight go = keep(&s, kept);
 	const double v = speed_of(x, way, &go);
+	const struct motion m = { x, go, v };
 	double a;
 
 	*ret_left = s;
 	for (uint32_t k = 0; k < x->n; k++)
-		leave(x, k, way + k * INTERP_AXES_WAY, v, &go, ret_left);
+		leave(&m, k, way + k * INTERP_AXES_WAY, ret_left);
 	ret_left->a_mm_s2 = larger(ret_left->a_mm_s2, go.a_mm_s2);
 	a = smaller(ret_left->a_mm_s2, comes_to_mm_s2(ret_left, v));
 	for (uint32_t k = 0; k < x->n; k++, way += INTERP_AXES_WAY) {
