@@ -218,7 +218,8 @@ void *interp_build_take(struct interp_build *b,
 	}
 	write_tables(b, &h, base, threads);
 	if (interp_program_map(&p, base, h.bytes) == 0 &&
-	    interp_limits_write(&l, &p, segs, (void *)(base + h.bends_at)) < 0) {
+	    interp_limits_write(&l, &p, segs,
+				(void *)(base + h.bends_at)) < 0) {
 		if (!b->o.memory)
 			free(base);
 		return NULL;

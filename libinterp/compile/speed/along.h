@@ -52,14 +52,14 @@ struct interp_straight interp_axes_straight(const struct interp_axes *x,
  * interp_axes_mm_s() - the greatest speed at a place, at which the axes leave
  * @kept for going along, or most of what they can do.
  *
- * @ret_left: what they leave at that speed, or slower, to either side.  It is no
- *	      less than @kept.
+ * @ret_left: what they leave at that speed, or slower, to either side.  It is
+ *	      no less than @kept.
  */
 double interp_axes_mm_s(const struct interp_axes *x, const double *way,
 			const struct interp_straight *kept,
 			struct interp_straight *ret_left);
 
-/** interp_axes_round() - each axis may be off by @corner_mm, in its own unit. */
+/** interp_axes_round() - each axis may be off by @corner_mm, in its unit. */
 void interp_axes_round(struct interp_axes *x, double corner_mm);
 
 /**

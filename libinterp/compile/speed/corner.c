@@ -13,7 +13,8 @@ void interp_axes_round(struct interp_axes *x, double corner_mm)
 	for (uint32_t k = 0; k < x->n; k++) {
 		const double a = x->a_mm_s2[k], j = x->j_mm_s3[k];
 
-		x->step_mm_s[k] = smaller(sqrt(8 * a * c), cbrt(36 * j * c * c));
+		x->step_mm_s[k] = smaller(sqrt(8 * a * c),
+					  cbrt(36 * j * c * c));
 		x->step_mm_s2[k] = cbrt(24 * c * j * j);
 	}
 }

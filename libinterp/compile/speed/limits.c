@@ -4,9 +4,9 @@
  *
  * Each place has a ceiling, by what its axes can do and by what of that a move
  * keeps for going along the path.  Who keeps more passes bends slower, and is
- * back at speed earlier.  A move has the least acceleration and jerk of its way.
- * So its time is found for some shares of what its axes can do at their worst
- * place, and the best of them holds for all of it.
+ * back at speed earlier.  A move has the least acceleration and jerk of its
+ * way.  So its time is found for some shares of what its axes can do at their
+ * worst place, and the best of them holds for all of it.
  */
 #include "speed/looks.h"
 #include "speed/pass.h"
@@ -21,6 +21,9 @@
 
 /* Lines that are shorter than so many corners stand for a curve. */
 #define SHORT_CORNERS	100
+
+/* Of what looks at a curve allow, between them. */
+#define LOOKED		0.98f
 
 /* Where stands may pay is found with so much of what the axes can do. */
 #define PLAIN		0.5
@@ -93,6 +96,10 @@ static void write_seg(const struct limits *w, uint32_t i,
 				 smaller(v, last->v_mm_s);
 		a = pass_least(a, (float)last->left.a_mm_s2);
 		j = pass_least(j, (float)last->left.j_mm_s3);
+	}
+	if (s->kind == INTERP_CURVE) {
+		a *= LOOKED;
+		j *= LOOKED;
 	}
 	s->a_mm_s2 = pass_least(a, of->a_mm_s2);
 	s->j_mm_s3 = pass_least(j, of->j_mm_s3);

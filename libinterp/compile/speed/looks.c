@@ -14,7 +14,7 @@
 #include <stdlib.h>
 
 #define ARC_RAD		(M_PI / 8)	/* between two looks at an arc */
-#define CURVE_LOOKS	9
+#define CURVE_LOOKS	17
 
 /* Beside the path, a rounding of it counts so often. */
 #define RATE_MOST	20
@@ -29,8 +29,8 @@ struct making {
 
 /* -- Lines ----------------------------------------------------------------- */
 
-/* By how much column @k goes in a mm of line @i, and what a rounding of its ends
- * makes of that. */
+/* By how much column @k goes in a mm of line @i, and what a rounding of its
+ * ends makes of that. */
 struct rate {
 	double by, off;
 };
@@ -60,8 +60,8 @@ static double axes_mm_s(const struct making *m, uint32_t i)
 	return v;
 }
 
-/* The machine goes along the lines: at the node behind line @i each axis makes a
- * step of its speed, however smooth the shape is. */
+/* The machine goes along the lines: at the node behind line @i each axis makes
+ * a step of its speed, however smooth the shape is. */
 static double step_mm_s(const struct making *m, uint32_t i)
 {
 	double v = INFINITY;
@@ -84,7 +84,7 @@ static float least(float a, double b)
 	return (double)a < b ? a : (float)b;
 }
 
-/* The axes do not notice a bend of a curve whose radius is less than a pulse. */
+/* Axes do not notice a bend of a curve whose radius is less than a pulse. */
 static void overlook(const struct making *m, double *way)
 {
 	const double most = 1 / m->pulse_mm;
@@ -148,8 +148,8 @@ static int look_at_seg(struct making *m, const struct section *s)
 	return err;
 }
 
-/* Of a line of a run: by the mean of what its shape goes by, and by what it goes
- * by itself for sure. */
+/* Of a line of a run: by the mean of what its shape goes by, and by what it
+ * goes by itself for sure. */
 static void bound(struct making *m, uint32_t i)
 {
 	struct look_all *to = m->to;
@@ -212,7 +212,7 @@ static void note_corner(struct making *m, const struct section *s)
 					 s->along != next->along;
 }
 
-/* A line that goes back and forth within a rounding seems to ask for nothing. */
+/* A line that goes back and forth within a rounding asks for nothing. */
 static void ask_something(struct look_all *k, struct looks *of)
 {
 	for (uint32_t j = 0; j < k->axes.n; j++) {

@@ -231,7 +231,7 @@ static double beside_mm_s(const struct pass *w, uint32_t i, double other_mm_s)
 	const struct interp_seg *s = &w->segs[i];
 	const double feed = (double)s->feed_max_mm_s;
 
-	return (w->segs[i].kind == INTERP_LINE && w->segs[i].length_mm < w->short_mm) ?
+	return s->kind == INTERP_LINE && s->length_mm < w->short_mm ?
 	       smaller(feed, other_mm_s +
 			     sqrt(w->travel_a_mm_s2 * s->length_mm)) : feed;
 }

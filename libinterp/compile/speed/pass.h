@@ -36,8 +36,8 @@ static inline float pass_least(float a, float b)
 /** pass_levels() - one behind the other, what is nearly alike becomes alike. */
 void pass_levels(struct pass *w);
 
-/** pass_may_stand() - do segments allow so different things that a stand between
- *  them may pay? */
+/** pass_may_stand() - do segments allow so different things that a stand
+ *  between them may pay? */
 static inline bool pass_may_stand(const struct pass *w)
 {
 	return w->parts || w->soft.a_most >= 2 * w->soft.a_least ||

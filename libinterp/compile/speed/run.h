@@ -37,8 +37,8 @@ struct run_part {
 void sections_part_way(const struct run_part *p, double s_mm, double *ret);
 
 /**
- * sections_parts() - call @found for one part after the other.  The part lasts for
- * the call; who takes its shape leaves an empty one there.
+ * sections_parts() - call @found for one part after the other.  The part lasts
+ * for the call; who takes its shape leaves an empty one there.
  *
  * Return: 0, -ENOMEM, or what @found returned that is no 0.
  */

@@ -98,8 +98,8 @@ static void of_arc(const struct interp_program *p, const struct interp_arc *a,
 	}
 }
 
-static void of_curve(struct sections *w, const struct interp_seg *s, double part,
-		     double *ret)
+static void of_curve(struct sections *w, const struct interp_seg *s,
+		     double part, double *ret)
 {
 	const struct interp_program *p = w->p;
 	const struct interp_piece *piece = &p->pieces[s->arg];
@@ -119,8 +119,8 @@ static void of_curve(struct sections *w, const struct interp_seg *s, double part
 	}
 	stops += interp_nurbs_stop_of(stops, piece->nstops, s_mm);
 	interp_nurbs_between(stops, &between);
-	interp_nurbs_way(&w->curve.eval, interp_nurbs_between_at(&between,
-								 s_mm), &way_at);
+	interp_nurbs_way(&w->curve.eval,
+			 interp_nurbs_between_at(&between, s_mm), &way_at);
 	for (uint32_t j = 0; !way_at.cusp && j < w->curve.eval.c.naxes; j++) {
 		double *way = ret + INTERP_AXES_WAY * ways_column(
 			p, p->curves[piece->curve].axis[j]);

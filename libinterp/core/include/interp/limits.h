@@ -13,14 +13,14 @@
  *	r1 v,    r1 a + r2 v^2    and    r1 j + 3 r2 v a + r3 v^3
  *
  * That is so for lines, arcs, two contours and curves.  Lines shorter than 100
- * corner_mm stand for a curve: the smoothest one that keeps within a rounding of
- * their ends.  A move has the least acceleration and jerk of its way.  What of
- * its axes it keeps for them, and what is left for bends, is chosen so that the
- * move takes the least time.
+ * corner_mm stand for a curve: the smoothest one that keeps within a rounding
+ * of their ends.  A move has the least acceleration and jerk of its way.  What
+ * of its axes it keeps for them, and what is left for bends, is chosen so that
+ * the move takes the least time.
  *
- * At a node each axis makes a step of its speed, and where a line becomes an arc
- * one of its acceleration.  They are so small that the axis is off by no more
- * than corner_mm, in its own unit:
+ * At a node each axis makes a step of its speed, and where a line becomes an
+ * arc one of its acceleration.  They are so small that the axis is off by no
+ * more than corner_mm, in its own unit:
  *
  *	step of v <= sqrt(8*a*corner), step of v <= cbrt(36*j*corner^2)
  *	step of a <= cbrt(24*j^2*corner)
@@ -38,8 +38,8 @@
  * No segment of many points is faster than the machine makes them.
  *
  * Speeds, accelerations and jerks one behind the other that are nearly alike
- * become the least of them.  So at most a few hundred can follow each other with
- * each less than the one before.
+ * become the least of them.  So at most a few hundred can follow each other
+ * with each less than the one before.
  *
  * Where the least of a whole way would take much longer, INTERP_SEG_STAND cuts
  * the way in two (compile/speed/stretch.c).
