@@ -96,6 +96,8 @@ struct io_inputs {
 	struct io_plc plc;
 	struct io_generator generator;
 	int32_t actual[IO_NAXES];	/* pulses, measured or last written */
+	int32_t own[IO_NAXES];		/* pulses from the drive's own zero, if
+					 * it keeps one without power */
 };
 
 /* What the cycle wants, once a period. */

@@ -185,7 +185,7 @@ export const zhFaults: Record<Fault, FaultWords> = {
 	"limit-switch": { what: "轴碰到限位开关", why: "没有回零,travel_min 或 travel_max 不对,或开关损坏", clear: "复位;回退,没有任务时点动离开开关" },
 	"door": { what: "门开着", why: "运动中开门,或门开关损坏", clear: `关门;${RESET}` },
 	"dielectric": { what: "工作液太低,不能放电", why: "液位开关;由 PLC 监视液位时,任何运动都需要它", clear: `加液;${RESET}` },
-	"home-not-found": { what: "回零走完行程没有遇到开关或索引", why: "开关或接线,或机床文件的 home_dir", clear: "复位;修理;重新回零" },
+	"home-not-found": { what: "回零没有遇到开关或索引,或驱动器自己的位置在行程之外", why: "开关或接线,或机床文件的 home_dir、home_at_mm、home_search_mm", clear: "复位;修理,或把轴点动到开关上;重新回零" },
 	"no-contact": { what: "测量没有碰到任何东西", why: "走到终点或行程尽头:工件在别处", clear: "复位;回退;查看工件位置;启动重新测量,结束任务放弃" },
 	"drive": { what: "驱动器故障", why: "它报告故障、无应答,或没有及时使能;edmd 的日志说明是哪个", clear: `修理;${RESET}` },
 	"following": { what: "轴不在指令位置", why: "有东西卡住,或驱动器太弱或没调好", clear: `找出卡住的东西;${RESET}` },
