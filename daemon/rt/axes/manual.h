@@ -68,9 +68,9 @@ struct manual {
 	uint32_t todo;			/* home: bit per axis still to do */
 	enum home_phase phase;
 	double phase_mm;		/* gone_mm when the phase began */
-	int64_t end[INTERP_NAXES];	/* pulses: where its search ends */
-	uint32_t aimed;			/* bit per axis with such an end */
-	int64_t end_off;		/* the same, of its way off the switch */
+	int64_t end[INTERP_NAXES];	/* pulses: there its search ends */
+	uint32_t aimed;			/* bit per axis: it has such an end */
+	int64_t end_off;		/* the same, off the switch */
 	int32_t met;			/* pulses at the switch or mark */
 	uint32_t homed;			/* bit per axis */
 	uint32_t unplaced;		/* bit per axis whose drive lost its
