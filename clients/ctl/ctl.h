@@ -100,6 +100,13 @@ struct shm_status;
 int ctl_shm_open(const struct ctl *c, const struct shm_status **ret);
 
 /**
+ * ctl_number() - read a number with nothing behind it; otherwise print what is
+ * wrong.  Return: 0 or EX_USAGE.
+ */
+int ctl_number(const struct ctl *c, const char *text, const char *wanted,
+	       double *ret);
+
+/**
  * ctl_ask() - ask, and print only errors.  Return: an exit code; 0: @ret is
  * filled, and the caller frees it.
  */

@@ -60,6 +60,7 @@ struct loop {
 	bool opening;			/* a program was asked for */
 	bool ahead;			/* ... that is to be loaded later */
 	uint64_t unloading;		/* command that waits for a stop */
+	uint64_t moved_by;		/* command whose motion began last */
 	bool ending;			/* no more commands: shutting down */
 	pthread_t thread;
 	sem_t ready;

@@ -49,6 +49,7 @@ SAME(SHM_OUTCOME_NONE, OUTCOME_NONE);
 SAME(SHM_OUTCOME_DONE, OUTCOME_DONE);
 SAME(SHM_OUTCOME_FAULT, OUTCOME_FAULT);
 SAME(SHM_OUTCOME_STOPPED, OUTCOME_STOPPED);
+SAME(MOVED_FAULT, SHM_MOVED_FAULT);
 _Static_assert((int)CYCLE_NVERBS <= (int)SHM_LOAD, "verbs do not overlap");
 
 /* A job that has ended shows its last place until it is unloaded. */
@@ -301,6 +302,7 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 		.state = c->state,
 		.fault = c->fault.first,
 		.faults = c->fault.latched,
+		.moved_by = l->moved_by, .moved = c->moved.how,
 		.outcome = c->outcome,
 		.program = l->program ? l->program->n : 0,
 		.cond_number = c->out.cond_number,

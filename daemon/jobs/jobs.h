@@ -8,6 +8,7 @@
 #ifndef JOBS_JOBS_H
 #define JOBS_JOBS_H
 
+#include "begun.h"
 #include "calls.h"
 #include "checkpoint.h"
 #include "config.h"
@@ -40,6 +41,7 @@ struct jobs {
 	struct twin twin;
 	struct uploads uploads;
 	struct replies replies;
+	struct begun begun;
 	struct queue queue;
 	struct tally tally;
 	struct calls calls;

@@ -162,8 +162,10 @@ static void on_answer(void *arg, int code)
 	if (a->verb->machine == SHM_DO_START ||
 	    a->verb->machine == SHM_DO_RESUME)
 		queue_started(j, code);
+	if (code == SHM_DONE && begun_is(a->verb))
+		begun_keep(j, &a->by);
 	if (code == SHM_DONE)
-		verbs_answer(j, &c, 0, "done");
+		verbs_answer(j, &c, 0, begun_is(a->verb) ? "begun" : "done");
 	else if (gone(code))
 		verbs_answer(j, &c, EX_UNAVAILABLE, gone(code));
 	else if (code == -ESHUTDOWN)
@@ -649,6 +651,7 @@ static const struct verb verbs[] = {
 	{ "mdi", ROLE_OPERATOR, VERB_ACTS, mdi_take, VERB_OWN, "" },
 	{ "offsets", ROLE_VIEWER, VERB_ASKS, offset_list, VERB_OWN, "" },
 	{ "offset", ROLE_OPERATOR, VERB_ACTS, offset_set, VERB_OWN, "" },
+	{ "moved", ROLE_VIEWER, VERB_ASKS, begun_tell, VERB_OWN, "" },
 	{ "why", ROLE_VIEWER, VERB_ASKS, verbs_why, VERB_OWN, "" },
 	{ "values", ROLE_VIEWER, VERB_ASKS, verbs_values, VERB_OWN, "" },
 	{ "trail", ROLE_VIEWER, VERB_ASKS, verbs_trail, VERB_OWN, "" },

@@ -111,6 +111,7 @@ static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 	if (answer != ANSWER_DONE)
 		return answer;
 	cycle_happen(c, EVENT_HOLD);
+	moved_begin(c);
 	axes_want(c, go_back, arg_mm);
 	return ANSWER_DONE;
 }
@@ -138,6 +139,7 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 		return answer;
 	if (c->manual.unplaced)
 		return ANSWER_NOT_HOMED;
+	moved_begin(c);
 	axes_want(c, go_to_node, arg_mm);
 	return ANSWER_DONE;
 }
@@ -220,6 +222,7 @@ static enum cycle_answer do_manual(struct cycle *c,
 	if (answer != ANSWER_DONE)
 		return answer;
 	cycle_enter(c, jog ? STATE_JOG : STATE_HOME);
+	moved_begin(c);
 	axes_want(c, NULL, 0);
 	return ANSWER_DONE;
 }
@@ -234,6 +237,7 @@ static enum cycle_answer do_press(struct cycle *c,
 
 	if (begun) {
 		cycle_enter(c, STATE_JOG);
+		moved_begin(c);
 		axes_want(c, NULL, 0);
 	}
 	return (enum cycle_answer)answer;

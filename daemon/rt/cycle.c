@@ -284,8 +284,10 @@ static void give(struct cycle *c, struct io_outputs *out)
 static void go_manually(struct cycle *c, const struct io_inputs *in)
 {
 	c->feed_mm_s = 0;
-	if (cycle_is_manual(c) && manual_go(c, in))
-		cycle_enter(c, c->fault.latched ? STATE_FAULT : STATE_IDLE);
+	if (!cycle_is_manual(c) || !manual_go(c, in))
+		return;
+	c->moved.there = !c->manual.halt;
+	cycle_enter(c, c->fault.latched ? STATE_FAULT : STATE_IDLE);
 }
 
 /* The machine is held until the axes have power and stand on their places. */
@@ -350,5 +352,6 @@ void cycle_step(struct cycle *c, const struct io_inputs *in,
 		c->overruns_in_row = 0;
 	c->overran = false;
 	asking_step(c, in);
+	moved_watch(c);
 	give(c, out);
 }

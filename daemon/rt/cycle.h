@@ -36,6 +36,7 @@
 #include "path/ground.h"
 #include "path/mcode.h"
 #include "path/mover.h"
+#include "moved.h"
 #include "gap/conditions.h"
 #include "gap/retract.h"
 #include "gap/servo.h"
@@ -231,6 +232,7 @@ struct cycle {
 	struct resync resync;		/* from where they stand to the path */
 	struct cycle_ahead ahead;
 	struct manual manual;		/* motion without a program */
+	struct moved moved;		/* the motion asked for last */
 	struct limit limit;
 	struct comp comp;		/* from places to pulses */
 	struct contouring contouring;	/* for axes that lag */

@@ -51,7 +51,7 @@
 #include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	10
+#define SHM_LAYOUT	11
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 #define SHM_PATH_MAX	96
@@ -62,6 +62,8 @@
 #define SHM_DONE_SLOTS		256	/* commands that are remembered */
 #define SHM_ENDED_SLOTS		64	/* jobs that ended; a power of two */
 #define SHM_LATENCY_BINS	256	/* of 1 us; the last holds all above */
+#define SHM_TOOK_PARTS		128	/* bins of this part of a period ... */
+#define SHM_TOOK_BINS		256	/* ... up to two periods; likewise */
 
 struct shm_head {
 	uint32_t magic;
@@ -80,6 +82,15 @@ enum shm_state {
 };
 #undef SHM_STATE_NUMBER
 
+/* The same numbers as enum moved_how. */
+enum shm_moved {
+	SHM_MOVED_NOT,
+	SHM_MOVED_GOES_ON,
+	SHM_MOVED_THERE,
+	SHM_MOVED_SHORT,
+	SHM_MOVED_FAULT
+};
+
 struct shm_snapshot {
 	uint64_t cycle;			/* since edmd started */
 	int64_t time_ns;		/* CLOCK_REALTIME of this cycle */
@@ -89,6 +100,9 @@ struct shm_snapshot {
 	uint32_t outcome;		/* enum cycle_outcome of the last job */
 	uint32_t program;		/* program.<n>, until unloaded; or 0 */
 	uint32_t seg, tick;		/* place, exactly */
+	uint64_t moved_by;		/* id of the command whose motion began
+					 * last; 0: none */
+	uint32_t moved, pad4;		/* how it ended; enum shm_moved */
 	uint64_t faults;		/* all that are latched: bit n, fault
 					 * n */
 	uint32_t line;			/* of the source */
@@ -270,6 +284,7 @@ struct shm_status {
 	struct shm_head head;
 	uint64_t born;			/* drawn when the object was made */
 	uint32_t latency_us[SHM_LATENCY_BINS];	/* histogram of wake_late */
+	uint32_t took[SHM_TOOK_BINS];	/* and of what each period took */
 	struct shm_snap snap[2];
 	uint64_t snap_next;		/* snapshots written so far */
 	uint64_t trace_next;		/* records written so far */

@@ -62,6 +62,7 @@ static bool status_fits(const struct shm_status *s, const char *machine)
 static void status_adopt(struct shm_status *s)
 {
 	memset(s->latency_us, 0, sizeof(s->latency_us));
+	memset(s->took, 0, sizeof(s->took));
 	for (int i = 0; i < 2; i++)
 		s->snap[i].seq.sequence += s->snap[i].seq.sequence & 1;
 }
