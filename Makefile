@@ -609,7 +609,8 @@ walkable: $(B)/unit/test_walkable
 	$(Q)EDM_RUNS=$(RUNS) $(if $(SEED),EDM_SEED=$(SEED)) $<
 
 # What threads share, under the thread sanitizer.
-run-crossings: $(filter $(B)/unit/test_shm% $(B)/unit/test_limits_threads,$(UNIT_X))
+run-crossings: $(filter $(B)/unit/test_shm% $(B)/unit/test_limits_threads \
+		$(B)/unit/test_stamped,$(UNIT_X))
 	$(Q)printf '%s\n' $^ | xargs -n 1 tests/one-unit
 
 # Another compiler's opinion: warnings are errors, nothing is linked.

@@ -130,7 +130,8 @@ int ctl_step(struct ctl *c)
 int ctl_jog(struct ctl *c)
 {
 	double mm;
-	int err = ctl_number(c, c->value, "mm, or degrees of A B C, + or -", &mm);
+	int err = ctl_number(c, c->value, "mm, or degrees of A B C, + or -",
+			     &mm);
 
 	return err ? err : say_moved(c, &(struct talk_question) {
 		.verb = "jog", .text = c->arg, .arg = mm,

@@ -2,8 +2,8 @@
 /*
  * begun.h - motions that clients asked for, and how they ended
  *
- * A motion is answered when it begins: "begun".  Who asked for it may ask how it
- * ended, by the verb "moved".  edmd knows (shm.h: moved); this service knows
+ * A motion is answered when it begins: "begun".  Who asked for it may ask how
+ * it ended, by the verb "moved".  edmd knows (shm.h: moved); this service knows
  * whose motion it was.
  *
  * Threads: one, that of the event loop.

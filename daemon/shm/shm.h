@@ -48,7 +48,6 @@
 #include <stdint.h>
 
 #include <ck_ring.h>
-#include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
 #define SHM_LAYOUT	11
@@ -223,8 +222,8 @@ struct shm_event {
 
 /*
  * A ring that one writer fills and any number of readers follow at their own
- * pace.  Slot i holds record number n when its stamp is 2n + 2; an odd stamp
- * is being written.  A reader that fell behind skips and is told how many.
+ * pace: common/stamped.h.  A reader that fell behind skips records, and is told
+ * how many.
  */
 struct shm_trace_slot {
 	uint64_t stamp;
@@ -276,8 +275,8 @@ struct shm_done_slot {
  * so that a writer killed in the middle of one leaves the other.
  */
 struct shm_snap {
-	ck_sequence_t seq;
-	struct shm_snapshot s;
+	uint64_t stamp;
+	struct shm_snapshot record;
 };
 
 struct shm_status {

@@ -56,15 +56,12 @@ static bool status_fits(const struct shm_status *s, const char *machine)
 
 /*
  * The snapshots stay until the first new one, so an edmd that is killed before
- * that loses nothing.  A slot that the dead edmd was writing has an odd
- * sequence.  The next write would make it even in the middle of writing.
+ * that loses nothing.
  */
 static void status_adopt(struct shm_status *s)
 {
 	memset(s->latency_us, 0, sizeof(s->latency_us));
 	memset(s->took, 0, sizeof(s->took));
-	for (int i = 0; i < 2; i++)
-		s->snap[i].seq.sequence += s->snap[i].seq.sequence & 1;
 }
 
 /* If the object cannot be completed, it is removed. */
