@@ -147,7 +147,7 @@ INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE
 INC_panel	= -Iclients/panel -Icommon $(WORDS_H) $(INC_values) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_plan	= -Iclients/plan -Icommon $(INC_config) $(INC_compiling)
-INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan -Iclients/panel
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan -Iclients/panel -Iclients/ctl
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
 part = $(if $(filter common,$(firstword $(subst /, ,$1))),common,$(word 2,$(subst /, ,$1)))
@@ -362,6 +362,7 @@ $(B)/unit/test_store $(B)/unit/test_store_electrode $(B)/unit/test_store_turn: U
 $(B)/unit/test_checkpoint: $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/checkpoint.c daemon/jobs/checkpoint_block.c) daemon/jobs/jobs_log.c)
 $(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
 
+$(B)/unit/test_doctor_rt: $(call obj,clients/ctl/doctor_rt.c)
 $(B)/unit/test_share: $(call obj,clients/panel/share.c)
 $(B)/unit/test_frames: $(call obj,clients/panel/frames.c)
 $(B)/unit/test_frames: UNIT_LIBS = -lssl

@@ -5,11 +5,11 @@
  * A row of slots that the writer goes round.  Slot i holds record number n when
  * its stamp is 2n + 2; an odd stamp is being written.  No reader can delay the
  * writer: a record may be overwritten while it is read, and the stamp, read
- * before and after, shows it.  A writer that is killed inside a record leaves the
- * others whole; the next one writes the same record again.
+ * before and after, shows it.  A writer that is killed inside a record leaves
+ * the others whole; the next one writes the same record again.
  *
- * The slots may be in memory that processes share.  A slot begins with its stamp,
- * a uint64_t, and the record behind it is a whole number of 8 bytes.
+ * The slots may be in memory that processes share.  A slot begins with its
+ * stamp, a uint64_t; the record behind it is a whole number of 8 bytes.
  *
  * Threads: stamped_put() one; the others any.  RT-safe.
  */
