@@ -194,6 +194,17 @@ int ctl_move(struct ctl *c)
 	});
 }
 
+int ctl_done(struct ctl *c)
+{
+	double n = 0;
+	int err = c->arg ? number(c, c->arg, "the number of what is done", &n) :
+			   0;
+
+	return err ? err : ctl_say(c, &(struct talk_question) {
+		.verb = "done", .arg = n,
+	});
+}
+
 int ctl_override(struct ctl *c)
 {
 	double percent;

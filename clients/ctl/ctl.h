@@ -64,6 +64,7 @@ int ctl_remove(struct ctl *c);
 int ctl_move(struct ctl *c);
 int ctl_set(struct ctl *c);
 int ctl_step(struct ctl *c);
+int ctl_done(struct ctl *c);
 int ctl_override(struct ctl *c);
 int ctl_jog(struct ctl *c);
 int ctl_jog_on(struct ctl *c);
@@ -162,7 +163,7 @@ struct line {
 					 * end */
 	double told_s;			/* when the last line was printed */
 	struct mean feed;
-	char state[3 * TALK_WORD_MAX];	/* of that line */
+	char state[4 * TALK_WORD_MAX];	/* of that line */
 	char text[LINE_MAX_CHARS];	/* of the last status; tty: unused */
 };
 

@@ -81,6 +81,8 @@ static const struct verb verbs[] = {
 	  "go on after a hold; or with a job that was interrupted" },
 	{ "stop", "", ctl_command, 0, 0, false, "",
 	  "end the job where it stands" },
+	{ "done", "[NUMBER]", ctl_done, 1, 0, false, "",
+	  "say that what the job asks for is done, or which electrode is in" },
 	{ "retract", "MM", ctl_retract, 1, 1, false, "wait",
 	  "go back along the path; the job is then held" },
 	{ "step", "+N|-N", ctl_step, 1, 1, false, "wait",

@@ -25,7 +25,8 @@ struct loop_told {
 	uint32_t program, number;	/* the condition called last, and in */
 	char letter;			/* which program; 0: none */
 	uint32_t hunts;			/* of the totals */
-	uint32_t hand;			/* fields that a person is to set */
+	struct stand_now stand;
+	uint64_t stood;			/* cycle in which that began */
 };
 
 struct loop_timing {

@@ -46,6 +46,7 @@ struct io_plc {
 	bool door_closed, level_ok, temperature_ok, no_fire, wire_whole;
 	bool hold;			/* as long as it is true */
 	bool start, reset;		/* asked for, in this period only */
+	bool confirm;			/* ... what the job asks for is done */
 	uint8_t mcode_done;		/* M code carried out; 0: none */
 	uint16_t program;		/* to be loaded; 0: none */
 	double override;		/* 1: as programmed */

@@ -8,6 +8,7 @@
 #ifndef JOBS_JOBS_H
 #define JOBS_JOBS_H
 
+#include "asks.h"
 #include "begun.h"
 #include "calls.h"
 #include "checkpoint.h"
@@ -43,6 +44,7 @@ struct jobs {
 	struct replies replies;
 	struct begun begun;
 	struct queue queue;
+	struct asks asks;
 	struct tally tally;
 	struct calls calls;
 	struct eta eta;

@@ -38,6 +38,8 @@ static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 		return ANSWER_NO_PROGRAM;
 	if (!stands_held(c))
 		return ANSWER_WRONG_STATE;
+	if (stand_asks(c))
+		return ANSWER_ASKS;
 	if (c->limit.on)
 		return ANSWER_AT_LIMIT;
 	if (c->manual.unplaced ||
@@ -68,6 +70,7 @@ static enum cycle_answer do_hold(struct cycle *c, double arg_mm)
 		return ANSWER_WRONG_STATE;
 	c->hold.moving = false;
 	axes_forget(c);
+	stand_begin(c, STAND_COMMAND, 0);
 	cycle_happen(c, EVENT_HOLD);
 	return ANSWER_DONE;
 }
@@ -110,6 +113,7 @@ static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 	answer = may_begin(c);
 	if (answer != ANSWER_DONE)
 		return answer;
+	stand_begin(c, STAND_COMMAND, 0);
 	cycle_happen(c, EVENT_HOLD);
 	moved_begin(c);
 	axes_want(c, go_back, arg_mm);
@@ -142,6 +146,13 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 	moved_begin(c);
 	axes_want(c, go_to_node, arg_mm);
 	return ANSWER_DONE;
+}
+
+static enum cycle_answer do_confirm(struct cycle *c, double of)
+{
+	if (!c->loaded)
+		return ANSWER_NO_PROGRAM;
+	return stand_confirm(c, of) ? ANSWER_DONE : ANSWER_NOT_ASKED;
 }
 
 static enum cycle_answer do_estop(struct cycle *c, double arg_mm)
@@ -191,6 +202,7 @@ static enum cycle_answer (*const verbs[CYCLE_NVERBS])(struct cycle *,
 	[CYCLE_RESET]	= do_reset,
 	[CYCLE_OVERRIDE] = do_override,
 	[CYCLE_STEP]	= do_step,
+	[CYCLE_CONFIRM]	= do_confirm,
 };
 
 static enum cycle_answer do_set(struct cycle *c, const struct cycle_command *m)
@@ -269,6 +281,8 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 		return ANSWER_BAD_ARGUMENT;
 	c->out.path++;
 	c->loaded = true;
+	stand_end(c);
+	stand_begin(c, STAND_READY, 0);
 	c->outcome = OUTCOME_NONE;
 	c->totals = (struct cycle_totals) { 0 };
 	c->far_mm = far_mm;

@@ -90,8 +90,10 @@ static enum cycle_event look(struct cycle *c)
 {
 	const bool powered = state_duty[c->state].power;
 
-	if (asking_hand(c))
+	if (asking_hand(c)) {
+		stand_begin(c, STAND_SETTING, c->asking.stands);
 		return EVENT_HOLD;
+	}
 	if (asking_waits(c))
 		return !escape_is_out(&c->escape) && walk_positions(c) ?
 		       EVENT_FREE : EVENT_NONE;
@@ -132,8 +134,9 @@ static void stand(struct cycle *c)
 		cycle_end_job(c, OUTCOME_STOPPED);
 }
 
-static void stand_held(struct cycle *c)
+static void stand_held(struct cycle *c, enum stand_reason why, uint32_t of)
 {
+	stand_begin(c, why, of);
 	cycle_happen(c, EVENT_HOLD);
 	mover_set(&c->mover, 0);
 }
@@ -167,11 +170,18 @@ static void meet_action(struct cycle *c)
 		mover_set(&c->mover, 0);
 		break;
 	case ACTION_HOLD:
-		stand_held(c);
+		stand_held(c, STAND_STOP, 0);
+		break;
+	case ACTION_OPTIONAL:
+		stand_held(c, STAND_OPTIONAL, 0);
+		break;
+	case ACTION_ELECTRODE:
+		stand_held(c, STAND_ELECTRODE, c->cursor.seg.arg &
+						~INTERP_ELECTRODE_STOP);
 		break;
 	case ACTION_END:
 		if (c->config.hold_at_end)
-			stand_held(c);
+			stand_held(c, STAND_END, 0);
 		else if (contouring_rests(&c->contouring))
 			cycle_end_job(c, OUTCOME_DONE);
 		else

@@ -127,7 +127,8 @@ struct shm_snapshot {
 					 * there are in the present row */
 	uint32_t arcs;			/* times that the share of arcs was
 					 * above arcing_share */
-	uint32_t pad3;
+	uint32_t stand;			/* why the job stands or waits now; enum
+					 * stand_reason */
 	double retract_mm_max;
 	double energy_j;		/* of the discharges; NAN: the machine
 					 * does not count it */
@@ -162,7 +163,12 @@ struct shm_snapshot {
 					 * is not answered; 0: none */
 	uint8_t homed;			/* bit per axis */
 	bool has_origin;
-	uint8_t pad2;
+	bool confirmed;			/* what the stand asks for is done */
+	uint32_t stand_of;		/* the electrode's number; a bit of each
+					 * field to set */
+	uint32_t kept_stand, kept_of;	/* the same of the job, also while a
+					 * fault is latched */
+	uint64_t stand_cycles;		/* how long */
 };
 
 /* What SHM_DO_SET has set in a job; written when it changes. */
@@ -203,9 +209,9 @@ enum shm_event_kind {
 	SHM_EV_SET,			/* id: the field, enum interp_tech_id */
 	SHM_EV_SELECT,			/* by the PLC; code: job n */
 	SHM_EV_HUNTING,			/* code: retracts in a row */
-	SHM_EV_HAND,			/* it stands until a person has set
-					 * fields; id: a bit of each, enum
-					 * interp_tech_id */
+	SHM_EV_STAND,			/* the job stands or waits; code: enum
+					 * stand_reason, NONE: no longer; id:
+					 * what it is about */
 };
 
 struct shm_event {
@@ -315,6 +321,8 @@ enum shm_answer {
 	SHM_NOT_HOMED, SHM_AT_LIMIT, SHM_BEYOND, SHM_NO_NODE, SHM_NOT_PASSED,
 	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED, SHM_STILL_THERE,
 	SHM_NO_POWER,
+	SHM_ASKS,
+	SHM_NOT_ASKED,
 	/* Not of the cycle: */
 	SHM_LATE = 50,			/* came after its until_ns: not done */
 	SHM_CUT_SHORT,			/* edmd ended while it did it; the place

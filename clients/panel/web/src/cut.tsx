@@ -134,7 +134,9 @@ function Foot(p: { open: (what: string) => void }): JSX.Element {
 			<Key id="retract" why={whyNot("retract")} onPress={() => p.open("retract")}>{t("retract")}</Key>
 			{fault ? <Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key> :
 				<Key id="hold" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>}
-			<PressKey id="start" class={isRunning() ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
+			{s.asks && <PressKey id="done" class="primary" why={whyNot("retract")} onPress={() => void act("done", { arg: s.stand === "electrode" ? s.standOf : 0 })}>
+				{s.stand !== "electrode" ? t("done.set") : s.standOf ? t("done.electrode", { n: s.standOf }) : t("done.empty")}</PressKey>}
+			<PressKey id="start" class={isRunning() || s.asks ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
 				onPress={() => void act("start")}>{t(held ? "resume" : "start")}</PressKey>
 		</div>
 	</footer>;
