@@ -197,7 +197,7 @@ int ctl_move(struct ctl *c)
 int ctl_done(struct ctl *c)
 {
 	double n = 0;
-	int err = c->arg ? number(c, c->arg, "the number of what is done", &n) :
+	int err = c->arg ? ctl_number(c, c->arg, "an electrode's number", &n) :
 			   0;
 
 	return err ? err : ctl_say(c, &(struct talk_question) {

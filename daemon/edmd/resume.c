@@ -129,8 +129,8 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 		.found_once = s->found_once, .found_twice = s->found_twice,
 		.pump = s->pump, .mcode = s->mcode, .mcode_at = s->mcode_at,
 		.stand = {
-			.why = stand_row(s->kept_stand) == stand_row(STAND_NONE) ?
-			       STAND_NONE : (enum stand_reason)s->kept_stand,
+			.why = s->kept_stand < STAND_NREASONS ?
+			       (enum stand_reason)s->kept_stand : STAND_NONE,
 			.of = s->kept_of, .confirmed = s->confirmed,
 		},
 		.totals = {

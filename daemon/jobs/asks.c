@@ -89,8 +89,8 @@ static void ask_electrode(struct jobs *j, const struct asks_what *w, char *to,
 			 e.name, is, w->of);
 }
 
-static void ask_setting(const struct jobs *j, const struct asks_what *w, char *to,
-			size_t size)
+static void ask_setting(const struct jobs *j, const struct asks_what *w,
+			char *to, size_t size)
 {
 	const struct shm_snapshot *s = snap_of(j);
 	char names[120];
@@ -105,7 +105,8 @@ static void ask_setting(const struct jobs *j, const struct asks_what *w, char *t
 			 s->cond_letter, s->cond_number);
 }
 
-static void say(struct jobs *j, const struct asks_what *w, char *to, size_t size)
+static void say(struct jobs *j, const struct asks_what *w, char *to,
+		size_t size)
 {
 	const struct stand_row *row = stand_row(w->why);
 
@@ -151,7 +152,7 @@ static const char *of_job(struct jobs *j)
 	return t->text;
 }
 
-/* -- As STATUS has it ------------------------------------------------------- */
+/* -- As STATUS has it ------------------------------------------------------ */
 
 static bool queue_stands(const struct jobs *j)
 {
@@ -183,7 +184,7 @@ double asks_stood_s(const struct jobs *j)
 			    1e9 : 0;
 }
 
-/* -- As it is told ---------------------------------------------------------- */
+/* -- As it is told --------------------------------------------------------- */
 
 /* What nobody has commanded is told: somebody has to come. */
 static bool calls(uint32_t why)
@@ -195,8 +196,10 @@ static bool calls(uint32_t why)
 
 void asks_event(struct jobs *j, const struct shm_event *e)
 {
-	const struct asks_what w = { (uint32_t)e->code, (uint32_t)e->id, e->line,
-				false };
+	const struct asks_what w = {
+		.why = (uint32_t)e->code, .of = (uint32_t)e->id,
+		.line = e->line,
+	};
 	char asks[ASKS_TEXT_MAX];
 
 	if (!j->queue.job.n || e->program != j->queue.job.n || !calls(w.why))
