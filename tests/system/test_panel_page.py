@@ -632,3 +632,40 @@ def test_the_daemon_dies_and_comes_back(p, page):
         "edmd-jobs does not answer")
     p.machine.start_jobs()
     expect(page.locator(".head .state p")).to_contain_text("No job is loaded")
+
+
+CHANGE = b"G21 G90 F600\nG0 Z1\nT3\nG0 Z2\nM0 (look at it)\nG0 Z3\nM30\n"
+SIZES = ((1280, 800), (800, 480), (390, 844))
+
+
+def shot(page, name):
+    if folder := os.environ.get("EDM_SHOTS"):
+        page.screenshot(path=f"{folder}/{name}.png")
+
+
+def test_the_page_says_what_it_stands_for_and_takes_the_answer(p, page):
+    client = p.machine.client
+    for n in (1, 3):
+        client.ask("electrode-add", arg=n, text=f"name=e{n}")
+    client.ask("electrode-use", arg=1)
+    assert client.submit(CHANGE, "change").code == 0
+    why = page.locator(".head .state p")
+    expect(why).to_have_text("Put electrode 3 in; 1 is in. Then confirm it.")
+    expect(page.locator("#start")).to_have_attribute("aria-disabled", "true")
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        for key in ("#done", "#start"):
+            expect(page.locator(key)).to_be_in_viewport(ratio=1)
+        expect(why).to_be_in_viewport(ratio=1)
+        assert why.evaluate("e => e.scrollWidth <= e.clientWidth + 1")
+        shot(page, f"electrode-{width}")
+    press(page.locator("#done"))
+    expect(why).to_have_text("Electrode 3 is in. Go on.")
+    expect(page.locator("#done")).to_have_count(0)
+    press(page.locator("#start"))
+    expect(why).to_have_text("The program stops in line 5. Go on when you are "
+                             "ready.")
+    shot(page, "stop-390")
+    press(page.locator("#start"))
+    client.job_where("change", "done", 30)
+    client.ask("electrode-use", arg=0)
