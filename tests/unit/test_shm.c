@@ -118,7 +118,7 @@ static void shared_structs_keep_their_size(void **state)
 {
 	(void)state;
 	assert_int_equal(sizeof(struct shm_head), 56);
-	assert_int_equal(sizeof(struct shm_snapshot), 656);
+	assert_int_equal(sizeof(struct shm_snapshot), 680);
 	assert_int_equal(sizeof(struct shm_trace), 136);
 	assert_int_equal(sizeof(struct shm_trace_slot), 144);
 	assert_int_equal(sizeof(struct shm_event), 64);
