@@ -669,3 +669,40 @@ def test_the_page_says_what_it_stands_for_and_takes_the_answer(p, page):
     press(page.locator("#start"))
     client.job_where("change", "done", 30)
     client.ask("electrode-use", arg=0)
+
+
+# Is a line of text shown whole, with nothing of it cut off?
+WHOLE = """e => e.scrollWidth <= e.clientWidth + 1 &&
+    e.scrollHeight <= e.clientHeight + 1"""
+
+
+def says_on_every_page(page, words):
+    """In the head, which is above everything else of the page."""
+    for name in PAGES:
+        show(page, name)
+        why = page.locator("header.head .state p")
+        expect(why).to_contain_text(words)
+        assert why.evaluate(WHOLE), (name, why.inner_text())
+        main = page.locator("main.page").bounding_box()
+        assert why.bounding_box()["y"] < main["y"]
+
+
+def test_every_page_says_at_its_top_that_no_command_gets_through(p, page):
+    """And names what is left: the machine's own emergency stop."""
+    own = "own emergency stop"
+    try:
+        p.machine.jobs.send_signal(signal.SIGSTOP)
+        says_on_every_page(page, "edmd-jobs does not answer. Hold, Stop and "
+                           "E-stop go to edmd itself")
+        says_on_every_page(page, own)
+        p.machine.edmd.send_signal(signal.SIGSTOP)
+        says_on_every_page(page, "No command reaches the machine. Use its "
+                           + own)
+    finally:
+        p.machine.edmd.send_signal(signal.SIGCONT)
+        p.machine.jobs.send_signal(signal.SIGCONT)
+    expect(page.locator(".head .state p")).not_to_contain_text(own)
+    p.kill()
+    says_on_every_page(page, own)
+    p.start_panel()
+    expect(page.locator(".head .state p")).not_to_contain_text(own)
