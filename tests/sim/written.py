@@ -10,6 +10,8 @@ A file of tests/data/written has programs like this:
     0,0 5,0 (5,2)+7,2           lines; an arc round (5, 2), + counter-clockwise
     -- refused
     words of the refusal
+    -- faces
+    0,0 5,0                     of the bottom, and in the next line of the top
     -- peer
                                 LinuxCNC's own interpreter says the way
 
@@ -29,7 +31,8 @@ TOKEN = re.compile(r"(?:\(([-\d.]+),([-\d.]+)\)([+-]))?([-\d.]+(?:,[-\d.]+)*)")
 
 
 class Written:
-    def __init__(self, name, dialect, text, kind, want):
+    def __init__(self, file, name, dialect, text, kind, want):
+        self.file = file
         self.name, self.dialect, self.text = name, dialect, text
         self.kind, self.want = kind, want
 
@@ -41,7 +44,7 @@ def programs(file):
         head, rest = part.split("\n", 1)
         name, dialect = head.rsplit(", ", 1)
         text, kind, want = re.split(r"^-- (\w+)\n", rest, flags=re.M)
-        ret.append(Written(name, dialect, text, kind, want.strip()))
+        ret.append(Written(file.stem, name, dialect, text, kind, want.strip()))
     return ret
 
 
