@@ -136,6 +136,8 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 		return ANSWER_NO_PROGRAM;
 	if (!stands_held(c) || escape_is_out(&c->escape))
 		return ANSWER_WRONG_STATE;
+	if (arg_mm > 0 && stand_asks(c))
+		return ANSWER_ASKS;
 	answer = (enum cycle_answer)step_to(c, arg_mm, &to_mm);
 	if (answer == ANSWER_DONE)
 		answer = may_begin(c);

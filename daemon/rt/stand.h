@@ -35,7 +35,8 @@ void stand_begin(struct cycle *c, enum stand_reason why, uint32_t of);
 /** stand_end() - it sets off. */
 void stand_end(struct cycle *c);
 
-/** stand_asks() - is start refused, because nobody has confirmed? */
+/** stand_asks() - has nobody confirmed what is asked for?  Then nothing goes on
+ *  along the path: start is refused, and a step ahead. */
 bool stand_asks(const struct cycle *c);
 
 /** stand_confirm() - somebody says that it is done; @of says what, where the

@@ -7,6 +7,7 @@ import re
 
 import pytest
 import rig
+from test_power import die
 
 MACHINE = rig.NULL_MACHINE + "\n[tech]\ntable = shop.tech\n"
 TABLE = "condition, servo_v, on_us\nC100, 20, 10\nC200, 20, 20\n"
@@ -101,6 +102,52 @@ def test_nothing_that_comes_between_answers_for_it(shop):
     ctl(shop, "start")
     stands(shop, "stop")
     assert held(shop) == [3]
+
+
+@pytest.mark.parametrize("confirms", [False, True])
+def test_a_power_cut_at_the_change_asks_again(shop, confirms):
+    """What was said before it is on no disk, and the holder may have been
+    emptied since."""
+    at_the_change(shop)
+    if confirms:
+        ctl(shop, "done", "3")
+    die(shop)
+    shop.start()
+    shop.client.status_where(lambda s: s.interrupted == "work", 10)
+    assert held(shop) == [1]
+    a = shop.client.ask("resume", "work", text="XYZABCUV")
+    assert a.code == 0, a.reason
+    shop.client.job_where("work", "ready")
+    ctl(shop, "start")
+    s = stands(shop, "electrode")
+    assert "put electrode 3 rib in (1 is in)" in s.asks
+    ctl(shop, "done", "3")
+    ctl(shop, "start")
+    stands(shop, "stop")
+    assert held(shop) == [3]
+
+
+@pytest.mark.parametrize("words", [
+    ["start"], ["resume"], ["start", "work"], ["resume", "work"], ["step", "+1"],
+    ["done"], ["done", "1"], ["done", "--", "-3"], ["done", "3.5"]],
+    ids="-".join)
+def test_no_other_word_answers_for_it(shop, words):
+    at_the_change(shop)
+    place = shop.client.status().place_mm
+    r = shop.ctl(*words)
+    assert r.returncode != 0, (words, r.stdout)
+    s = stands(shop, "electrode")
+    assert s.place_mm == place and held(shop) == [1]
+
+
+def test_a_way_back_in_the_middle_leaves_it_asked_for(shop):
+    at_the_change(shop)
+    ctl(shop, "retract", "0.5")
+    shop.client.status_where(lambda s: s.state == "hold")
+    ctl(shop, "start", code=1)
+    ctl(shop, "stop")
+    shop.client.job_where("work", "stopped")
+    assert held(shop) == [1]
 
 
 def test_an_empty_holder_is_asked_for(shop):
