@@ -595,7 +595,9 @@ def test_the_panel_dies_and_comes_back(p, page):
 def test_a_power_cut_is_told(p, page):
     """All of the machine is gone at once, and nothing of it is in memory."""
     client = p.machine.client
-    p.session().post("/api/jobs?name=night.ngc", panel.JOB)
+    # So long that it is not over, however late this process sees it begin.
+    p.session().post("/api/jobs?name=night.ngc",
+                     panel.JOB.replace(b"G1 Z-2 ", b"G1 Z-9 "))
     client.status_where(lambda s: s.state == "erode", 60)
     p.machine.kill("jobs")
     p.machine.kill("edmd")
@@ -648,7 +650,10 @@ def test_the_page_says_what_it_stands_for_and_takes_the_answer(p, page):
     for n in (1, 3):
         client.ask("electrode-add", arg=n, text=f"name=e{n}")
     client.ask("electrode-use", arg=1)
-    assert client.submit(CHANGE, "change").code == 0
+    end_job(page, p)
+    assert client.submit(CHANGE, "change", hold=True).code == 0
+    client.job_where("change", "ready", 20)
+    press(page.locator("#start"))
     why = page.locator(".head .state p")
     expect(why).to_have_text("Put electrode 3 in; 1 is in. Then confirm it.")
     expect(page.locator("#start")).to_have_attribute("aria-disabled", "true")
