@@ -60,12 +60,15 @@ SANFLAGS = $(if $(filter 1,$(SAN)),-fsanitize=address$(,)undefined -fno-sanitize
 	   $(if $(filter 1,$(TSAN)),-fsanitize=thread)
 ,	:= ,
 
-OPT	?= -O2
+# What runs under a sanitizer, and the tests themselves, are compiled and linked in
+# half the time that way; a report still has its lines.
+FAST	= -O1 -g1
+OPT	?= $(if $(filter 1,$(SAN) $(TSAN)),$(FAST),-O2)
 WARN	= -Wall -Wextra -Wconversion -Wshadow -Wpedantic $(if $(WERROR),-Werror)
-CFLAGS	= -std=c11 -D_GNU_SOURCE $(OPT) -g $(WARN) -ffunction-sections \
+CFLAGS	= -std=c11 -D_GNU_SOURCE -g $(OPT) $(WARN) -ffunction-sections \
 	  -DEDM_VERSION='"$(VERSION)"' -DEDM_DIALECTS='"$(DIALECTS)"' $(SANFLAGS)
 # A shim round a library of C++, whose own headers are not ours to mend.
-CXXFLAGS = -std=c++17 $(OPT) -g -Wall -Wextra -Wshadow $(if $(WERROR),-Werror) \
+CXXFLAGS = -std=c++17 -g $(OPT) -Wall -Wextra -Wshadow $(if $(WERROR),-Werror) \
 	   -isystem /usr/include/eigen3 \
 	   $(subst -I,-isystem ,$(filter -I%,$(shell pkg-config --cflags ompl))) \
 	   $(SANFLAGS)
@@ -147,7 +150,7 @@ INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE
 INC_panel	= -Iclients/panel -Icommon $(WORDS_H) $(INC_values) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_plan	= -Iclients/plan -Icommon $(INC_config) $(INC_compiling)
-INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan -Iclients/panel
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan -Iclients/panel -Iclients/ctl
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
 part = $(if $(filter common,$(firstword $(subst /, ,$1))),common,$(word 2,$(subst /, ,$1)))
@@ -222,6 +225,7 @@ $(B)/%.o: %.cc
 	@mkdir -p $(@D)
 	$(Q)$(call object,$(CXX) $(CXXFLAGS) $(INC_$(call part,$<)))
 
+ifneq ($(OPT),$(FAST))
 # From text to program there are many short loops over the axes, and roots whose
 # errno nobody asks for.
 $(call obj,$(wildcard $(addprefix libinterp/compile/,code/again.c code/scan.c \
@@ -231,6 +235,8 @@ $(call obj,libinterp/core/pulse/arc.c): OPT += -fno-trapping-math
 # Over two to four columns vectors take more than they give.
 $(call obj,$(wildcard $(addprefix libinterp/compile/,path/build.c speed/*.c))): \
 	OPT += -fno-tree-vectorize
+endif
+$(B)/tests/unit/%.o: OPT = $(FAST)
 
 # What runs each period is optimised as a whole where it is linked into a program.
 # Its objects have machine code too, for all that is linked without that.  Not for
@@ -262,7 +268,7 @@ $(B)/messages/lcm.stamp: messages/edm.lcm
 $(B)/messages/edm_lcm.o: $(B)/messages/lcm.stamp
 	$(call say,CC,$(@F))
 	$(Q)cat $(LCM_C) > $(@D)/edm_lcm_all.c
-	$(Q)$(call whole,$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D) \
+	$(Q)$(call whole,$(CC) -std=gnu11 -g $(OPT) -w $(SANFLAGS) -I$(@D) \
 		-c $(@D)/edm_lcm_all.c -o)
 
 $(B)/messages/edm.c: messages/edm.idl
@@ -274,7 +280,7 @@ $(B)/messages/edm.c: messages/edm.idl
 
 $(B)/messages/edm.o: $(B)/messages/edm.c
 	$(call say,CC,$(@F))
-	$(Q)$(call object,$(CC) -std=gnu11 $(OPT) -g -w $(SANFLAGS) -I$(@D))
+	$(Q)$(call object,$(CC) -std=gnu11 -g $(OPT) -w $(SANFLAGS) -I$(@D))
 
 $(call obj,$(JOBS) $(CTL) $(CLIENT)): | $(B)/messages/lcm.stamp
 $(call obj,$(wildcard clients/dds/*.c)): | $(B)/messages/edm.c
@@ -362,6 +368,7 @@ $(B)/unit/test_store $(B)/unit/test_store_electrode $(B)/unit/test_store_turn: U
 $(B)/unit/test_checkpoint: $(LOGGER_O) $(call obj,$(wildcard daemon/jobs/checkpoint.c daemon/jobs/checkpoint_block.c) daemon/jobs/jobs_log.c)
 $(B)/unit/test_checkpoint: UNIT_LIBS = -lsodium -lsystemd
 
+$(B)/unit/test_doctor_rt: $(call obj,clients/ctl/doctor_rt.c)
 $(B)/unit/test_share: $(call obj,clients/panel/share.c)
 $(B)/unit/test_frames: $(call obj,clients/panel/frames.c)
 $(B)/unit/test_frames: UNIT_LIBS = -lssl
@@ -609,7 +616,7 @@ walkable: $(B)/unit/test_walkable
 	$(Q)EDM_RUNS=$(RUNS) $(if $(SEED),EDM_SEED=$(SEED)) $<
 
 # What threads share, under the thread sanitizer.
-run-crossings: $(filter $(B)/unit/test_shm%,$(UNIT_X))
+run-crossings: $(filter $(B)/unit/test_shm% $(B)/unit/test_stamped,$(UNIT_X))
 	$(Q)printf '%s\n' $^ | xargs -n 1 tests/one-unit
 
 # Another compiler's opinion: warnings are errors, nothing is linked.

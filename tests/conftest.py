@@ -96,6 +96,28 @@ def pytest_runtest_setup(item):
                 pytest.skip(f"needs {need}: {why}")
 
 
+# -- What a test leaves behind
+
+def strange_files():
+    """Files of the source tree that git does not know; none where git says
+    nothing of it."""
+    p = subprocess.run(["git", "ls-files", "-o", "-z", "--exclude-standard"],
+                       capture_output=True)
+    return {os.fsdecode(f) for f in p.stdout.split(b"\0") if f}
+
+
+def pytest_sessionstart(session):
+    session.strange_before = set() if WORKER else strange_files()
+
+
+def pytest_sessionfinish(session):
+    """A test writes in a folder of its own alone."""
+    left = set() if WORKER else strange_files() - session.strange_before
+    if left:
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+        print("\nleft in the source tree by a test:", *map(repr, sorted(left)))
+
+
 def pytest_terminal_summary(terminalreporter):
     """The reasons, each with how many tests it kept from running."""
     skipped = terminalreporter.stats.get("skipped", [])

@@ -130,7 +130,9 @@ int ctl_say(struct ctl *c, const struct talk_question *q)
 	if (err)
 		return err;
 	typed(verb, c, q);
-	if (c->json)
+	if (c->json && c->wait)
+		;			/* the end is printed */
+	else if (c->json)
 		printf("{\"verb\": \"%s\", \"code\": 0}\n", q->verb);
 	else
 		printf("%s: %s\n", verb, a.reason);
@@ -143,39 +145,10 @@ int ctl_command(struct ctl *c)
 	return ctl_say(c, &(struct talk_question) { .verb = c->verb });
 }
 
-int ctl_start(struct ctl *c)
-{
-	return ctl_say(c, &(struct talk_question) {
-		.verb = "start", .job = c->arg,
-	});
-}
-
-int ctl_resume(struct ctl *c)
-{
-	return ctl_say(c, &(struct talk_question) {
-		.verb = "resume", .job = c->arg, .text = c->value,
-	});
-}
-
 int ctl_remove(struct ctl *c)
 {
 	return ctl_say(c, &(struct talk_question) {
 		.verb = "remove", .job = c->arg,
-	});
-}
-
-int ctl_retract(struct ctl *c)
-{
-	char *end;
-	double mm = strtod(c->arg, &end);
-
-	if (end == c->arg || *end || !(mm > 0)) {
-		fprintf(stderr, "edmctl: retract %s: not a length; a number of "
-			"mm above 0\n", c->arg);
-		return EX_USAGE;
-	}
-	return ctl_say(c, &(struct talk_question) {
-		.verb = "retract", .arg = mm,
 	});
 }
 
@@ -198,9 +171,8 @@ int ctl_set(struct ctl *c)
 	});
 }
 
-/* Read a number with nothing behind it; otherwise print what is wrong. */
-static int number(const struct ctl *c, const char *text, const char *wanted,
-		  double *ret)
+int ctl_number(const struct ctl *c, const char *text, const char *wanted,
+	       double *ret)
 {
 	char *end;
 
@@ -215,47 +187,31 @@ static int number(const struct ctl *c, const char *text, const char *wanted,
 int ctl_move(struct ctl *c)
 {
 	double way;
-	int rc = number(c, c->value, "-1 or +1", &way);
+	int rc = ctl_number(c, c->value, "-1 or +1", &way);
 
 	return rc ? rc : ctl_say(c, &(struct talk_question) {
 		.verb = "move", .job = c->arg, .arg = way,
 	});
 }
 
-int ctl_step(struct ctl *c)
+int ctl_done(struct ctl *c)
 {
-	double n;
-	int err = number(c, c->arg, "nodes, as +1 or -2", &n);
+	double n = 0;
+	int err = c->arg ? ctl_number(c, c->arg, "an electrode's number", &n) :
+			   0;
 
 	return err ? err : ctl_say(c, &(struct talk_question) {
-		.verb = "step", .arg = n,
+		.verb = "done", .arg = n,
 	});
 }
 
 int ctl_override(struct ctl *c)
 {
 	double percent;
-	int err = number(c, c->arg, "percent, 0 to 200", &percent);
+	int err = ctl_number(c, c->arg, "percent, 0 to 200", &percent);
 
 	return err ? err : ctl_say(c, &(struct talk_question) {
 		.verb = "override", .arg = percent / 100,
-	});
-}
-
-int ctl_jog(struct ctl *c)
-{
-	double mm;
-	int err = number(c, c->value, "mm, or degrees of A B C, + or -", &mm);
-
-	return err ? err : ctl_say(c, &(struct talk_question) {
-		.verb = "jog", .text = c->arg, .arg = mm,
-	});
-}
-
-int ctl_home(struct ctl *c)
-{
-	return ctl_say(c, &(struct talk_question) {
-		.verb = "home", .text = c->arg,
 	});
 }
 

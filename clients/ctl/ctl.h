@@ -64,6 +64,7 @@ int ctl_remove(struct ctl *c);
 int ctl_move(struct ctl *c);
 int ctl_set(struct ctl *c);
 int ctl_step(struct ctl *c);
+int ctl_done(struct ctl *c);
 int ctl_override(struct ctl *c);
 int ctl_jog(struct ctl *c);
 int ctl_jog_on(struct ctl *c);
@@ -98,6 +99,13 @@ struct shm_status;
  * that fails, print why.  Return: an exit code; 0: @ret is open.
  */
 int ctl_shm_open(const struct ctl *c, const struct shm_status **ret);
+
+/**
+ * ctl_number() - read a number with nothing behind it; otherwise print what is
+ * wrong.  Return: 0 or EX_USAGE.
+ */
+int ctl_number(const struct ctl *c, const char *text, const char *wanted,
+	       double *ret);
 
 /**
  * ctl_ask() - ask, and print only errors.  Return: an exit code; 0: @ret is
@@ -155,7 +163,7 @@ struct line {
 					 * end */
 	double told_s;			/* when the last line was printed */
 	struct mean feed;
-	char state[3 * TALK_WORD_MAX];	/* of that line */
+	char state[4 * TALK_WORD_MAX];	/* of that line */
 	char text[LINE_MAX_CHARS];	/* of the last status; tty: unused */
 };
 

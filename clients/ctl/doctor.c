@@ -7,6 +7,7 @@
  * this process.
  */
 #include "ctl.h"
+#include "doctor_rt.h"
 
 #include "shm.h"
 
@@ -21,11 +22,9 @@
 #define GROUP		"239.255.76.67"	/* of the default URL */
 #define ARPHRD_CAN	280
 
-enum verdict { GOOD, UNUSED, BAD };
-
 struct finding {
 	enum verdict verdict;
-	char found[160];
+	char found[320];
 	const char *mend;		/* BAD only */
 };
 
@@ -72,15 +71,41 @@ static void look_kernel(const struct host *h, struct finding *f)
 	    "apt-get install linux-image-rt-amd64, and boot it");
 }
 
+static void look_rt(const struct host *h, struct finding *f,
+		    doctor_rt_fn *look, const char *mend)
+{
+	const struct doctor_rt d = {
+		.root = "", .pid = h->alive ? h->status->head.pid : 0,
+	};
+
+	f->verdict = look(&d, f->found, sizeof(f->found));
+	f->mend = f->verdict == BAD ? mend : "";
+}
+
 static void look_core(const struct host *h, struct finding *f)
 {
-	char cores[128];
+	look_rt(h, f, doctor_rt_core,
+		"boot with isolcpus=N nohz_full=N rcu_nocbs=N, and [machine] "
+		"cpu = N; another N for [gpio] edges_cpu");
+}
 
-	(void)h;
-	line_of("/sys/devices/system/cpu/isolated", cores, sizeof(cores));
-	say(f, cores[0] ? GOOD : BAD, cores[0] ? cores : "none isolated",
-	    "boot with isolcpus=N nohz_full=N rcu_nocbs=N, and [machine] cpu "
-	    "= N");
+static void look_governor(const struct host *h, struct finding *f)
+{
+	look_rt(h, f, doctor_rt_governor,
+		"cpupower -c N frequency-set -g performance");
+}
+
+static void look_throttle(const struct host *h, struct finding *f)
+{
+	look_rt(h, f, doctor_rt_throttle,
+		"sysctl -w kernel.sched_rt_runtime_us=-1");
+}
+
+static void look_irqs(const struct host *h, struct finding *f)
+{
+	look_rt(h, f, doctor_rt_irqs,
+		"chrt -f -p N PID of this thread, N above the others' and "
+		"below edmd-cycle's; and another core than edmd's");
 }
 
 /* The soft limit, from its column of /proc/PID/limits. */
@@ -315,6 +340,9 @@ static const struct {
 } things[] = {
 	{ "kernel",		look_kernel },
 	{ "isolated core",	look_core },
+	{ "governor",		look_governor },
+	{ "throttling",		look_throttle },
+	{ "interrupts",		look_irqs },
 	{ "memory lock",	look_memory },
 	{ "priority",		look_priority },
 	{ "multicast route",	look_route },

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * latency.c - how late the cycle woke: edmd's own histogram
+ * latency.c - how late the cycle woke, and how long a period took: edmd's own
+ * histograms
  *
- * It is read from shared memory, on the machine's own host.
+ * They are read from shared memory, on the machine's own host.
  */
 #include "ctl.h"
 #include "shm.h"
@@ -12,35 +13,42 @@
 #include <sysexits.h>
 #include <time.h>
 
-struct latency {
-	uint32_t bin[SHM_LATENCY_BINS];	/* of 1 us; the last: all above */
-	uint64_t wakes;
-	unsigned int min_us, max_us;
-	double mean_us;
+#define BINS_MAX	256
+
+_Static_assert(SHM_LATENCY_BINS <= BINS_MAX, "a histogram has room");
+_Static_assert(SHM_TOOK_BINS <= BINS_MAX, "a histogram has room");
+
+struct histogram {
+	const char *what;		/* of what is counted: "wakes" */
+	unsigned int nbins;
+	double bin_us;			/* the last bin has all above too */
+	const uint32_t *from;
+	uint32_t bin[BINS_MAX];
+	uint64_t n;
+	double min_us, mean_us, max_us;	/* where the bins begin */
+	bool above;			/* there are some in the last bin */
 };
 
-/* Take the histogram minus what was in it @before; NULL: all of it. */
-static void take(const struct shm_status *s, const uint32_t *before,
-		 struct latency *ret)
+/* Take what came into the histogram since it was taken last. */
+static void take(struct histogram *h)
 {
 	double sum = 0;
 
-	*ret = (struct latency) { .wakes = 0 };
-	for (unsigned int i = 0; i < SHM_LATENCY_BINS; i++) {
-		uint32_t n = __atomic_load_n(&s->latency_us[i],
-					     __ATOMIC_RELAXED);
-
-		n -= before ? before[i] : 0;
-		ret->bin[i] = n;
-		if (n == 0)
+	h->n = 0;
+	h->min_us = h->max_us = 0;
+	for (unsigned int i = 0; i < h->nbins; i++) {
+		h->bin[i] = __atomic_load_n(&h->from[i], __ATOMIC_RELAXED) -
+			    h->bin[i];
+		if (h->bin[i] == 0)
 			continue;
-		if (ret->wakes == 0)
-			ret->min_us = i;
-		ret->max_us = i;
-		ret->wakes += n;
-		sum += (double)n * i;
+		if (h->n == 0)
+			h->min_us = i * h->bin_us;
+		h->max_us = i * h->bin_us;
+		h->n += h->bin[i];
+		sum += (double)h->bin[i] * i * h->bin_us;
 	}
-	ret->mean_us = ret->wakes ? sum / (double)ret->wakes : 0;
+	h->above = h->bin[h->nbins - 1] > 0;
+	h->mean_us = h->n ? sum / (double)h->n : 0;
 }
 
 static void wait_for(double s)
@@ -53,38 +61,80 @@ static void wait_for(double s)
 	nanosleep(&t, NULL);
 }
 
-static void print(const struct latency *l)
+static void print(const struct histogram *h)
 {
-	for (unsigned int i = 0; i < SHM_LATENCY_BINS; i++)
-		if (l->bin[i])
-			printf("%5u us%s %10u\n", i,
-			       i == SHM_LATENCY_BINS - 1 ? "+" : " ",
-			       l->bin[i]);
-	printf("wakes %llu, min %u us, mean %.2f us, max %u us%s\n",
-	       (unsigned long long)l->wakes, l->min_us, l->mean_us, l->max_us,
-	       l->max_us == SHM_LATENCY_BINS - 1 ? " or more" : "");
+	for (unsigned int i = 0; i < h->nbins; i++)
+		if (h->bin[i])
+			printf("%5.7g us%s %10u\n", i * h->bin_us,
+			       i == h->nbins - 1 ? "+" : " ", h->bin[i]);
+	printf("%s %llu, min %.7g us, mean %.2f us, max %.7g us%s\n", h->what,
+	       (unsigned long long)h->n, h->min_us, h->mean_us, h->max_us,
+	       h->above ? " or more" : "");
 }
 
-static void print_json(const struct latency *l)
+static json_t *json_of(const struct histogram *h)
 {
 	json_t *bins = json_array();
 
-	for (unsigned int i = 0; i < SHM_LATENCY_BINS; i++)
-		json_array_append_new(bins, json_integer(l->bin[i]));
-	json_t *all = json_pack("{sI si sf si so}", "wakes",
-				(json_int_t)l->wakes, "min_us",
-				(int)l->min_us, "mean_us", l->mean_us,
-				"max_us", (int)l->max_us, "bins_us", bins);
+	for (unsigned int i = 0; i < h->nbins; i++)
+		json_array_append_new(bins, json_integer(h->bin[i]));
+	return json_pack("{sI sf sf sf sf so}", h->what, (json_int_t)h->n,
+			 "min_us", h->min_us, "mean_us", h->mean_us, "max_us",
+			 h->max_us, "bin_us", h->bin_us, "bins_us", bins);
+}
 
+static int print_json(const struct histogram *late,
+		      const struct histogram *took)
+{
+	json_t *all = json_of(late);
+
+	json_object_set_new(all, "took", json_of(took));
 	json_dumpf(all, stdout, JSON_COMPACT);
 	putchar('\n');
 	json_decref(all);
+	return EX_OK;
+}
+
+/* The period of an edmd that has not published yet is not known. */
+static double period_us(const struct shm_status *s)
+{
+	struct shm_snapshot now;
+
+	return shm_snapshot(s, &now) ? (double)now.period_ns / 1e3 : 0;
+}
+
+static int print_both(const struct ctl *c, const struct shm_status *s,
+		      double wait_s)
+{
+	struct histogram late = {
+		.what = "wakes", .nbins = SHM_LATENCY_BINS, .bin_us = 1,
+		.from = s->latency_us,
+	}, took = {
+		.what = "periods", .nbins = SHM_TOOK_BINS,
+		.bin_us = period_us(s) / SHM_TOOK_PARTS, .from = s->took,
+	};
+
+	if (wait_s > 0) {
+		for (unsigned int i = 0; i < BINS_MAX; i++) {
+			late.bin[i] = late.from[i];
+			took.bin[i] = took.from[i];
+		}
+		wait_for(wait_s);
+	}
+	take(&late);
+	take(&took);
+	if (c->json)
+		return print_json(&late, &took);
+	puts("how late it woke");
+	print(&late);
+	puts("\nwhat a period took");
+	print(&took);
+	return EX_OK;
 }
 
 int ctl_latency(struct ctl *c)
 {
 	const struct shm_status *s;
-	struct latency before, l;
 	double wait_s = 0;
 	char *end;
 	int err;
@@ -98,18 +148,5 @@ int ctl_latency(struct ctl *c)
 		}
 	}
 	err = ctl_shm_open(c, &s);
-	if (err)
-		return err;
-	take(s, NULL, &before);
-	if (c->arg) {
-		wait_for(wait_s);
-		take(s, before.bin, &l);
-	} else {
-		l = before;
-	}
-	if (c->json)
-		print_json(&l);
-	else
-		print(&l);
-	return EX_OK;
+	return err ? err : print_both(c, s, wait_s);
 }

@@ -104,6 +104,11 @@ static void describe(char *to, size_t size, const struct talk_status *s,
 			 s->queue_len, s->fault);
 		return;
 	}
+	if (*s->asks) {
+		snprintf(to, size, "%5.1f %% %s: %s", s->progress * 100,
+			 s->state, s->asks);
+		return;
+	}
 	if (s->eta_s >= 0)
 		ctl_duration(left, sizeof(left), s->eta_s);
 	else
@@ -120,7 +125,8 @@ static void describe(char *to, size_t size, const struct talk_status *s,
  * out. */
 static void what_changes(char *to, size_t size, const struct talk_status *s)
 {
-	snprintf(to, size, "%s %s %s", s->daemon, s->job, s->job_state);
+	snprintf(to, size, "%s %s %s %s", s->daemon, s->job, s->job_state,
+		 s->stand);
 }
 
 void line_status(struct line *l, const struct talk_status *s)

@@ -54,6 +54,8 @@ static void print_text(const struct talk_status *s)
 		ctl_duration(left, sizeof(left), s->eta_s);
 	printf("machine    %s\nedmd       %s\nstate      %s\nfault      %s\n",
 	       s->machine, s->daemon, s->state, s->fault);
+	if (*s->asks)
+		printf("stands     %s, %s\n", s->stand, s->asks);
 	if (*s->job)
 		printf("job        %s, %s, %s\nline       %d of %d\n"
 		       "path       %.3f mm of %.3f mm, %.1f %%\n"

@@ -82,14 +82,16 @@ static void print_row(const struct table_row *r, FILE *f)
 {
 	const edm_MachineState *m = r->m;
 	struct word name = clean(m->machine), host = clean(m->host);
-	struct word state = state_of(r), fault = clean(m->fault);
+	struct word state = state_of(r);
+	struct word needs = clean(strcmp(m->fault, "none") == 0 && *m->stand ?
+				  m->stand : m->fault);
 	char done[96];
 
 	progress_of(m, done, sizeof(done));
 	fprintf(f, "%-14s %-14s %-8s %-30s %9.3f mm %6.1f V "
 		"%8.3f mm/s %6u %6u  %s\n", name.c, host.c, state.c, done,
 		fit(m->depth_mm, 9999), fit(m->gap_v, 999),
-		fit(m->feed_mm_s, 999), m->jumps, m->retracts, fault.c);
+		fit(m->feed_mm_s, 999), m->jumps, m->retracts, needs.c);
 }
 
 void table_print(const struct table_row *row, size_t n, FILE *f)
@@ -98,7 +100,7 @@ void table_print(const struct table_row *row, size_t n, FILE *f)
 		return;
 	fprintf(f, "%-14s %-14s %-8s %-30s %12s %8s %13s %6s %6s  %s\n",
 		"MACHINE", "HOST", "STATE", "PROGRESS", "DEPTH", "GAP", "FEED",
-		"JUMPS", "RETR.", "FAULT");
+		"JUMPS", "RETR.", "FAULT OR STAND");
 	for (size_t i = 0; i < n; i++)
 		print_row(&row[i], f);
 }
@@ -134,6 +136,7 @@ static void json_words(json_t *o, const struct table_row *r)
 	json_object_set_new(o, "state", json_string(state_of(r).c));
 	json_object_set_new(o, "fault", json_string(clean(m->fault).c));
 	json_object_set_new(o, "outcome", json_string(clean(m->outcome).c));
+	json_object_set_new(o, "stand", json_string(clean(m->stand).c));
 	json_object_set_new(o, "generator_state",
 			    json_string(generator_of(m)));
 	json_object_set_new(o, "is_on", json_boolean(m->is_on));

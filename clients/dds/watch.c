@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* watch.c - one machine, seen through its shared memory */
 #include "faults.h"
+#include "stands.h"
 #include "watch.h"
 
 #include <errno.h>
@@ -135,5 +136,7 @@ void watch_look(struct watch *w, int64_t now_ns, edm_MachineState *ret)
 	if (here) {
 		ret->generator_state = generator(s);
 		ret->is_on = s->power;
+		snprintf(ret->stand, sizeof(ret->stand), "%s",
+			 stand_row(s->stand)->name);
 	}
 }

@@ -2,12 +2,14 @@
 /* child.c - run other programs within limits */
 #include "child.h"
 #include "clocks.h"
+#include "grow.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -185,24 +187,22 @@ void children_look(struct children *c)
 
 char *child_read(int fd, size_t most, size_t *ret_bytes)
 {
-	struct stat st;
-	size_t at = 0;
-	char *text;
+	char *text = NULL;
+	size_t n = 0;
+	FILE *f;
 
-	if (fstat(fd, &st) < 0 || st.st_size < 0 || (size_t)st.st_size > most)
-		return NULL;
-	text = malloc((size_t)st.st_size + 1);
-	while (text && at < (size_t)st.st_size) {
-		const ssize_t n = pread(fd, text + at, (size_t)st.st_size - at,
-					(off_t)at);
-
-		if (n <= 0)
-			break;
-		at += (size_t)n;
+	/* Others read it too: from its begin, unless it is a pipe. */
+	lseek(fd, 0, SEEK_SET);
+	f = fdopen(dup(fd), "r");
+	if (!f || grow_read(f, most, &text, &n) < 0) {
+		free(text);
+		text = NULL;
 	}
+	if (f)
+		fclose(f);
 	if (text)
-		text[at] = '\0';
+		text[n] = '\0';
 	if (ret_bytes)
-		*ret_bytes = at;
+		*ret_bytes = n;
 	return text;
 }

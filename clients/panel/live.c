@@ -6,6 +6,7 @@
 
 #include "config.h"
 #include "faults.h"
+#include "stands.h"
 
 #include <errno.h>
 #include <math.h>
@@ -227,6 +228,17 @@ static void fill_sums(const struct live *l, json_t *to)
 				   (double)s->period_ns / 1e9, 0.1));
 }
 
+static void fill_stand(const struct shm_snapshot *s, bool ok, json_t *to)
+{
+	const struct stand_row *row = stand_row(ok ? s->stand : STAND_NONE);
+
+	json_object_set_new(to, "stand", json_string(row->name));
+	json_object_set_new(to, "standOf", json_integer(s->stand_of));
+	json_object_set_new(to, "asks",
+			    json_boolean(row->ends == STAND_BY_CONFIRM &&
+					 !s->confirmed));
+}
+
 void live_fill(struct live *l, json_t *to)
 {
 	const struct shm_snapshot *s = &l->snap;
@@ -246,6 +258,7 @@ void live_fill(struct live *l, json_t *to)
 	json_object_set_new(to, "gap", number(ok ? s->gap_v : 0, 1e-3));
 	json_object_set_new(to, "feed", number(ok ? s->feed_mm_s : 0, 1e-6));
 	json_object_set_new(to, "override", number(s->override, 1e-4));
+	fill_stand(s, ok, to);
 	fill_places(l, to);
 	fill_sums(l, to);
 	values_fill(l->values, l->status, s, to);

@@ -396,6 +396,7 @@ static const struct verb verbs[] = {
 	{ "stop",     ROLE_OPERATOR, run_ask, NULL, VERBS_END, 0 },
 	{ "retract",  ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
 	{ "step",     ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "done",     ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
 	{ "jog",      ROLE_OPERATOR, run_ask, NULL, VERBS_ACT,
 	  SERVICE_ONCE | NUMBER },
 	{ "press",    ROLE_OPERATOR, run_press, NULL, VERBS_ASK, NUMBER },

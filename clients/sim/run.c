@@ -137,6 +137,7 @@ static void go_on(struct sim_run *r)
 		r->leg = 2;
 		c->config.hold_at_end = false;
 	}
+	command(r, CYCLE_CONFIRM, c->stand.of);
 	command(r, CYCLE_START, 0);
 }
 

@@ -22,14 +22,16 @@
  */
 #define CONFIG_BACKENDS(ROW) \
 	ROW(SIM, "sim", io_sim_open, 1000000, \
-	    MACHINE_NO_WIRES | MACHINE_MODEL, \
+	    MACHINE_NO_WIRES | MACHINE_MODEL | MACHINE_SWITCHES | \
+	    MACHINE_INDEX | MACHINE_OWN_PLACE, \
 	    backend_has_gap, NULL, NULL) \
 	ROW(NULL, "null", io_null_open, 1000000, \
 	    MACHINE_NO_WIRES | MACHINE_NONE, \
 	    backend_has_no_gap, NULL, NULL) \
-	ROW(GPIO, "gpio", io_gpio_open, 50000, 0, \
+	ROW(GPIO, "gpio", io_gpio_open, 50000, MACHINE_SWITCHES, \
 	    config_gpio_has_gap, config_check_gpio, config_gpio_points_s) \
-	ROW(CAN402, "can402", io_can402_open, 2000000, MACHINE_DRIVES, \
+	ROW(CAN402, "can402", io_can402_open, 2000000, \
+	    MACHINE_DRIVES | MACHINE_OWN_PLACE, \
 	    backend_can402_has_gap, config_check_can402, NULL)
 
 #define CONFIG_BACKEND_ID(id, name, open, period_ns, is, has_gap, check, \
@@ -48,6 +50,10 @@ enum config_machine_is {
 	MACHINE_DRIVES = 4,		/* drives on a bus: they are sent
 					 * places, and follow with a lag */
 	MACHINE_NONE = 8,		/* every place is reached at once */
+	MACHINE_SWITCHES = 16,		/* home and limit switches are read */
+	MACHINE_INDEX = 32,		/* index marks are read */
+	MACHINE_OWN_PLACE = 64,		/* a drive may tell a place of its
+					 * own: io_inputs.own */
 };
 
 struct machine_config;

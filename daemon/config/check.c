@@ -279,7 +279,7 @@ int config_check(const struct machine_config *c,
 	if (backend->check && backend->check(c, lines, diag))
 		return -EINVAL;
 	return check_period(&q) || check_present(&q) || check_lines(&q) ||
-	       check_guides(&q) ||
+	       check_guides(&q) || config_check_home(c, lines, diag) ||
 	       config_check_generator(c, lines, diag) ||
 	       config_check_plc(c, lines, diag) ||
 	       config_check_sim(c, lines, diag) ||

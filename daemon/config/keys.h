@@ -156,6 +156,11 @@ int config_maps_read(struct machine_config *c,
 		     const struct config_lines *lines,
 		     struct interp_diag *diag);
 
+/** config_check_home() - whether the backend can do each home_method. */
+int config_check_home(const struct machine_config *c,
+		      const struct config_lines *lines,
+		      struct interp_diag *diag);
+
 /** config_check_gpio() - the same for [gpio], if it is the backend. */
 int config_check_gpio(const struct machine_config *c,
 		      const struct config_lines *lines,

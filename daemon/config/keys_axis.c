@@ -82,6 +82,10 @@ static const struct config_key row[] = {
 	NUMBER(AXIS, "home_back_mm", "mm", "1", 1e-3, 1e4, MANUAL(home_back_mm),
 	       "distance that the axis leaves the switch by, before it "
 	       "goes onto it slowly"),
+	NUMBER(AXIS, "home_search_mm", "mm", "10", 1e-3, 1e4,
+	       MANUAL(home_search_mm),
+	       "homing goes this far beyond the last place where the switch "
+	       "or the mark can be, and no farther"),
 	COUNT(AXIS, "home_order", "", "0", 0, 99, MANUAL(home_order),
 	      "axes are homed one after another, the lowest number first"),
 	NUMBER(AXIS, "backlash_um", "um", "0", 0, 10000, BACKLASH(um),

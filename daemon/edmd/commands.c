@@ -89,6 +89,14 @@ static void unload_finish(struct loop *l)
 	loop_answer(l, id, (int32_t)answer);
 }
 
+/* Such a motion is answered when it begins: rt/moved.h. */
+static bool verb_moves(uint32_t verb)
+{
+	return verb == CYCLE_RETRACT || verb == CYCLE_STEP ||
+	       verb == CYCLE_JOG || verb == CYCLE_HOME ||
+	       verb == CYCLE_JOG_ON;
+}
+
 static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 {
 	struct cycle_command m = {
@@ -105,6 +113,8 @@ static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 	     c->verb == CYCLE_JOG_ON) && l->opening)
 		return ANSWER_WRONG_STATE;
 	answer = cycle_command(&l->cycle, &m);
+	if (answer == ANSWER_DONE && verb_moves(c->verb))
+		l->moved_by = c->id;
 	if (c->verb == CYCLE_SET && answer == ANSWER_DONE) {
 		loop_sets(l);
 		loop_event_set(l, c->arg, was,

@@ -21,15 +21,29 @@ bool loop_stands(const struct loop *l)
 	       c->feed_mm_s == 0 && !c->hold.moving;
 }
 
+static void count_one(uint32_t *bin)
+{
+	__atomic_store_n(bin, *bin + 1, __ATOMIC_RELAXED);
+}
+
 static void count_latency(struct loop *l, int64_t late_ns)
 {
-	size_t bin = setup_latency_bin(late_ns, SHM_LATENCY_BINS);
-	uint32_t *count = &l->status->latency_us[bin];
-
-	__atomic_store_n(count, *count + 1, __ATOMIC_RELAXED);
+	count_one(&l->status->latency_us[setup_latency_bin(late_ns,
+							   SHM_LATENCY_BINS)]);
 	l->timing.late_ns = late_ns;
 	if (late_ns > l->timing.late_max_ns)
 		l->timing.late_max_ns = late_ns;
+}
+
+static void count_took(struct loop *l, int64_t took_ns)
+{
+	const int64_t part = took_ns * SHM_TOOK_PARTS / l->clock.period_ns;
+
+	count_one(&l->status->took[part < SHM_TOOK_BINS ? part :
+				   SHM_TOOK_BINS - 1]);
+	l->timing.took_ns = took_ns;
+	if (took_ns > l->timing.took_max_ns)
+		l->timing.took_max_ns = took_ns;
 }
 
 /*
@@ -97,9 +111,7 @@ static void period(struct loop *l, const struct setup_wake *w)
 	steps(l, w->woke_ns);
 	loop_plc_write(l);
 
-	l->timing.took_ns = clock_ns(CLOCK_MONOTONIC) - w->woke_ns;
-	if (l->timing.took_ns > l->timing.took_max_ns)
-		l->timing.took_max_ns = l->timing.took_ns;
+	count_took(l, clock_ns(CLOCK_MONOTONIC) - w->woke_ns);
 	loop_snapshot(l, &s);
 	shm_snapshot_put(l->status, &s);
 	crossing_flag_set(&x->stands, l->ending && loop_stands(l));

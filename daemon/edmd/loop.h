@@ -25,7 +25,8 @@ struct loop_told {
 	uint32_t program, number;	/* the condition called last, and in */
 	char letter;			/* which program; 0: none */
 	uint32_t hunts;			/* of the totals */
-	uint32_t hand;			/* fields that a person is to set */
+	struct stand_now stand;
+	uint64_t stood;			/* cycle in which that began */
 };
 
 struct loop_timing {
@@ -60,6 +61,7 @@ struct loop {
 	bool opening;			/* a program was asked for */
 	bool ahead;			/* ... that is to be loaded later */
 	uint64_t unloading;		/* command that waits for a stop */
+	uint64_t moved_by;		/* command whose motion began last */
 	bool ending;			/* no more commands: shutting down */
 	pthread_t thread;
 	sem_t ready;

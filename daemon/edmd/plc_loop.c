@@ -20,6 +20,7 @@ void loop_plc_input(struct loop *l, struct io_inputs *in)
 	in->plc = l->plc_in;
 	l->plc_in.start = false;
 	l->plc_in.reset = false;
+	l->plc_in.confirm = false;
 }
 
 static double whole(double x, double min, double max)
@@ -51,6 +52,7 @@ _Static_assert(PLC_SPARK == 1 << 1 && PLC_RUNS == 1 << 2 &&
 void loop_plc_write(struct loop *l)
 {
 	const struct cycle *c = &l->cycle;
+	const struct stand_now stand = stand_now(c);
 	struct plc_tell t = {
 		.state = (uint8_t)c->state,
 		.flags = flags_of(c),
@@ -61,6 +63,8 @@ void loop_plc_write(struct loop *l)
 				       INT16_MAX),
 		.job = l->program ? l->program->n : 0,
 		.line = l->program ? c->cursor.seg.line : 0,
+		.stand = (uint8_t)stand.why,
+		.stand_of = stand.of,
 	};
 
 	memcpy(t.pos, c->out.target, sizeof(t.pos));

@@ -44,11 +44,14 @@ SAME(SHM_NOT_UP, ANSWER_NOT_UP);
 SAME(SHM_LOCKED, ANSWER_LOCKED);
 SAME(SHM_STILL_THERE, ANSWER_STILL_THERE);
 SAME(SHM_NO_POWER, ANSWER_NO_POWER);
-SAME(SHM_NO_POWER + 1, CYCLE_NANSWERS);
+SAME(SHM_ASKS, ANSWER_ASKS);
+SAME(SHM_NOT_ASKED, ANSWER_NOT_ASKED);
+SAME(SHM_NOT_ASKED + 1, CYCLE_NANSWERS);
 SAME(SHM_OUTCOME_NONE, OUTCOME_NONE);
 SAME(SHM_OUTCOME_DONE, OUTCOME_DONE);
 SAME(SHM_OUTCOME_FAULT, OUTCOME_FAULT);
 SAME(SHM_OUTCOME_STOPPED, OUTCOME_STOPPED);
+SAME(MOVED_FAULT, SHM_MOVED_FAULT);
 _Static_assert((int)CYCLE_NVERBS <= (int)SHM_LOAD, "verbs do not overlap");
 
 /* A job that has ended shows its last place until it is unloaded. */
@@ -185,6 +188,18 @@ static void notice_ended(const struct loop *l)
 	shm_ended_put(l->status, &e);
 }
 
+static void notice_stand(struct loop *l)
+{
+	const struct stand_now now = stand_now(&l->cycle);
+	struct loop_told *t = &l->told;
+
+	if (now.why == t->stand.why && now.of == t->stand.of)
+		return;
+	t->stand = now;
+	t->stood = l->cycle.count;
+	loop_event(l, SHM_EV_STAND, now.of, (int32_t)now.why);
+}
+
 /* Faults come first, so that a reader of "state: fault" already knows which. */
 void loop_notice(struct loop *l)
 {
@@ -194,7 +209,6 @@ void loop_notice(struct loop *l)
 	l->told.state = c->state;
 	l->told.outcome = c->outcome;
 	l->told.hunts = c->totals.hunts;
-	l->told.hand = c->asking.stands;
 	notice_faults(l);
 	if (c->state != was.state)
 		loop_event(l, SHM_EV_STATE, 0, (int32_t)c->state);
@@ -204,8 +218,7 @@ void loop_notice(struct loop *l)
 	}
 	if (c->totals.hunts > was.hunts && is_power_of_ten(c->totals.hunts))
 		loop_event(l, SHM_EV_HUNTING, 0, (int32_t)c->retract.in_row);
-	if (c->asking.stands && !was.hand)
-		loop_event(l, SHM_EV_HAND, c->asking.stands, 0);
+	notice_stand(l);
 	notice_condition(l);
 }
 
@@ -260,6 +273,18 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 	s->plc_override = l->cycle.plc_override;
 	s->mcode = l->cycle.mcode.number;
 	s->mcode_at = l->cycle.mcode.at;
+	s->kept_stand = l->cycle.stand.why;
+	s->kept_of = l->cycle.stand.of;
+	s->confirmed = l->cycle.stand.confirmed;
+}
+
+static void snapshot_stand_now(const struct loop *l, struct shm_snapshot *s)
+{
+	const struct stand_now now = stand_now(&l->cycle);
+
+	s->stand = now.why;
+	s->stand_of = now.of;
+	s->stand_cycles = now.why ? l->cycle.count - l->told.stood : 0;
 }
 
 static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
@@ -301,6 +326,7 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 		.state = c->state,
 		.fault = c->fault.first,
 		.faults = c->fault.latched,
+		.moved_by = l->moved_by, .moved = c->moved.how,
 		.outcome = c->outcome,
 		.program = l->program ? l->program->n : 0,
 		.cond_number = c->out.cond_number,
@@ -320,6 +346,7 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 		snapshot_place(c, ret);
 	snapshot_probe(c, ret);
 	snapshot_stand(l, ret);
+	snapshot_stand_now(l, ret);
 	snapshot_sums(c, ret);
 	snapshot_timing(l, ret);
 }

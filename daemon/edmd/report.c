@@ -8,6 +8,7 @@
 #include "hunting.h"
 #include "process.h"
 #include "log.h"
+#include "stands.h"
 
 #include <systemd/sd-daemon.h>
 
@@ -99,10 +100,18 @@ static const char *answer_text(int32_t code)
 	return cycle_answer_text((enum cycle_answer)code);
 }
 
+static void tell_stand(const struct shm_event *e)
+{
+	const struct stand_row *row = stand_row((uint32_t)e->code);
+
+	if (row->ends != STAND_BY_ITSELF)
+		log_line(row->ends == STAND_BY_CONFIRM ? LOG_WARNING : LOG_INFO,
+			 "cycle: line %u: %s; %s", e->line, row->what,
+			 row->asks);
+}
+
 static void tell(struct report *r, const struct shm_event *e)
 {
-	char names[96];
-
 	switch (e->kind) {
 	case SHM_EV_STATE:
 		tell_state(r, e);
@@ -123,9 +132,8 @@ static void tell(struct report *r, const struct shm_event *e)
 		log_line(LOG_WARNING, "cycle: " HUNTING_WHAT " at %.3f mm; "
 			 HUNTING_ADVICE, e->code, e->place_mm);
 		break;
-	case SHM_EV_HAND:
-		log_line(LOG_WARNING, "cycle: " PROCESS_HAND,
-			 process_names(e->id, names, sizeof(names)));
+	case SHM_EV_STAND:
+		tell_stand(e);
 		break;
 	case SHM_EV_ANSWER:
 		if (e->code != ANSWER_DONE)

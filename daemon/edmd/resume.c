@@ -128,6 +128,11 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 		.back_mm = s->back_mm, .sure_mm = s->sure_mm,
 		.found_once = s->found_once, .found_twice = s->found_twice,
 		.pump = s->pump, .mcode = s->mcode, .mcode_at = s->mcode_at,
+		.stand = {
+			.why = s->kept_stand < STAND_NREASONS ?
+			       (enum stand_reason)s->kept_stand : STAND_NONE,
+			.of = s->kept_of, .confirmed = s->confirmed,
+		},
 		.totals = {
 			.cycles = s->job_cycles,
 			.erode_cycles = s->erode_cycles,

@@ -305,6 +305,7 @@ static void fill(struct can402 *s, struct io_inputs *in, uint32_t unplaced)
 		const struct drive *d = &s->drive[i];
 
 		in->actual[s->axis[i]] = drive_place(d);
+		in->own[s->axis[i]] = drive_own_place(d);
 		in->ran_on[s->axis[i]] = s->stop[i].coast;
 		if (d->stands && s->placed && !d->lost)
 			in->stands_at[s->axis[i]] = drive_stands_at(d);

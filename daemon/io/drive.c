@@ -68,12 +68,27 @@ static int32_t wrapped(int64_t x)
 	return (int32_t)(uint32_t)(uint64_t)x;
 }
 
+/* Rounded. */
+static int64_t to_pulses(const struct drive *d, int32_t increments)
+{
+	const int64_t twice = 2 * (int64_t)increments * d->c.pulses +
+			      d->c.increments;
+
+	return floor_div(twice, 2 * (int64_t)d->c.increments);
+}
+
 static int32_t place_of(const struct drive *d, int32_t increments)
 {
-	const int64_t from = wrapped((int64_t)increments - d->zero);
-	const int64_t twice = 2 * from * d->c.pulses + d->c.increments;
+	return (int32_t)to_pulses(d, wrapped((int64_t)increments - d->zero));
+}
 
-	return (int32_t)floor_div(twice, 2 * (int64_t)d->c.increments);
+/* One that does not go into 32 bits must not look like another one. */
+int32_t drive_own_place(const struct drive *d)
+{
+	const int64_t at = to_pulses(d, d->actual);
+
+	return at > INT32_MAX ? INT32_MAX : at < INT32_MIN ? INT32_MIN :
+	       (int32_t)at;
 }
 
 int32_t drive_place(const struct drive *d)

@@ -250,6 +250,9 @@ void drive_keep_zero(struct drive *d, int32_t zero);
 /** drive_place() - its actual position in pulses, rounded to the nearest. */
 int32_t drive_place(const struct drive *d);
 
+/** drive_own_place() - the same from the drive's own zero. */
+int32_t drive_own_place(const struct drive *d);
+
 /** drive_stands_at() - where it begins when it joins, in pulses: its actual
  *  position, or, once it has torque, where it is held. */
 int32_t drive_stands_at(const struct drive *d);

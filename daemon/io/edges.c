@@ -2,13 +2,13 @@
 /*
  * edges.c - the edge thread
  *
- * The two threads exchange messages through a ring of boxes.  The writer fills
- * the next box and then says which one it was.  A reader may be interrupted for
- * so long that the writer comes round to its box; then it reads again, a few
- * times, and if that fails it keeps the message before.
+ * The two threads exchange messages (common/stamped.h).  A reader may be
+ * interrupted for so long that the writer comes round to its slot.  Then it
+ * reads again, a few times, and if that fails it keeps the message before.
  */
 #include "edges.h"
 #include "clocks.h"
+#include "stamped.h"
 #include "thread.h"
 
 #include <errno.h>
@@ -21,19 +21,19 @@
 #include <string.h>
 #include <time.h>
 
-#define BOXES		8		/* a power of two */
-#define WORDS		24
+#define SLOTS		8		/* a power of two */
 #define TRIES		4
 #define IDLE_NS		500000		/* before the first target */
 #define QUICK_WRITES	32
 
-struct box {
-	_Atomic uint32_t word[WORDS];
+struct told_slot {
+	uint64_t stamp;
+	struct edges_told record;
 };
 
-struct mailbox {
-	struct box box[BOXES];
-	_Atomic uint32_t n;		/* boxes written; the last is n - 1 */
+struct shown_slot {
+	uint64_t stamp;
+	struct edges_shown record;
 };
 
 /* The shortest of the last QUICK_WRITES times, or of twice as many. */
@@ -44,7 +44,9 @@ struct quickest {
 
 struct edges {
 	struct edges_config c;
-	struct mailbox told, shown;
+	struct told_slot told[SLOTS];
+	struct shown_slot shown[SLOTS];
+	uint64_t told_next, shown_next;
 	struct edges_told last_told;	/* the cycle's and ... */
 	struct edges_shown last_shown;	/* ... the thread's own copies */
 	struct pulser pulser;
@@ -62,61 +64,47 @@ struct edges {
 	_Atomic bool quit;
 };
 
-_Static_assert(sizeof(struct edges_told) <= 4 * WORDS, "a box holds it");
-_Static_assert(sizeof(struct edges_shown) <= 4 * WORDS, "a box holds it");
+_Static_assert(sizeof(struct edges_told) % 8 == 0, "whole words");
+_Static_assert(sizeof(struct edges_shown) % 8 == 0, "whole words");
 
 /* -- Between the threads -------------------------------------------------- */
 
-static void post(struct mailbox *m, const void *what, size_t bytes)
+static struct stamped told_of(struct edges *e)
 {
-	const uint32_t n = atomic_load_explicit(&m->n, memory_order_relaxed);
-	struct box *b = &m->box[n % BOXES];
-	uint32_t words[WORDS];
-
-	memcpy(words, what, bytes);
-	/* A reader that sees one of these words sees that the message before is
-	 * out, too, and so that the writer has come round. */
-	atomic_thread_fence(memory_order_release);
-	for (size_t i = 0; i < bytes / 4; i++)
-		atomic_store_explicit(&b->word[i], words[i],
-				      memory_order_relaxed);
-	atomic_store_explicit(&m->n, n + 1, memory_order_release);
+	return (struct stamped) { e->told, &e->told_next, SLOTS,
+				  sizeof(e->told[0]) };
 }
 
-/* False: nothing yet, or the writer came round each time. */
-static bool fetch(struct mailbox *m, void *ret, size_t bytes)
+static struct stamped shown_of(struct edges *e)
 {
-	uint32_t words[WORDS];
+	return (struct stamped) { e->shown, &e->shown_next, SLOTS,
+				  sizeof(e->shown[0]) };
+}
 
-	for (int try = 0; try < TRIES; try++) {
-		const uint32_t n = atomic_load_explicit(&m->n,
-							memory_order_acquire);
-		struct box *b = &m->box[(n - 1) % BOXES];
-		uint32_t now;
+/* What the cycle told last; if nothing new can be read, @last stays. */
+static void hear(struct edges *e, struct edges_told *last)
+{
+	const struct stamped r = told_of(e);
+	struct edges_told t;
 
-		if (n == 0)
-			return false;
-		for (size_t i = 0; i < bytes / 4; i++)
-			words[i] = atomic_load_explicit(&b->word[i],
-							memory_order_relaxed);
-		atomic_thread_fence(memory_order_acquire);
-		now = atomic_load_explicit(&m->n, memory_order_relaxed);
-		if (now - n < BOXES - 1) {
-			memcpy(ret, words, bytes);
-			return true;
-		}
-	}
-	return false;
+	if (stamped_last(&r, TRIES, &t))
+		*last = t;
 }
 
 void edges_tell(struct edges *e, const struct edges_told *t)
 {
-	post(&e->told, t, sizeof(*t));
+	const struct stamped r = told_of(e);
+
+	stamped_put(&r, t);
 }
 
 void edges_ask(struct edges *e, struct edges_shown *ret)
 {
-	fetch(&e->shown, &e->seen, sizeof(e->seen));
+	const struct stamped r = shown_of(e);
+	struct edges_shown s;
+
+	if (stamped_last(&r, TRIES, &s))
+		e->seen = s;
 	*ret = e->seen;
 }
 
@@ -151,7 +139,7 @@ static void heed_stop(struct edges *e)
 {
 	struct edges_told t = e->last_told;
 
-	fetch(&e->told, &t, sizeof(t));
+	hear(e, &t);
 	if (t.stop) {
 		e->held = true;
 		memcpy(e->held_at, t.target, sizeof(e->held_at));
@@ -207,6 +195,7 @@ static bool is_still(const struct edges *e)
 
 static void show(struct edges *e, bool end)
 {
+	const struct stamped r = shown_of(e);
 	struct edges_shown *s = &e->last_shown;
 
 	memcpy(s->put, e->pulser.put, sizeof(s->put));
@@ -215,7 +204,7 @@ static void show(struct edges *e, bool end)
 				    (4 * pulser_periods(&e->c.pulser));
 		s->periods++;
 	}
-	post(&e->shown, s, sizeof(*s));
+	stamped_put(&r, s);
 }
 
 static int64_t shorter(int64_t a, int64_t b)
@@ -289,7 +278,7 @@ static void play(struct edges *e, int64_t from_ns)
 	const int64_t slot_ns = e->c.period_ns / e->c.slots;
 	const int64_t until_ns = from_ns + e->c.period_ns - slot_ns / 2;
 
-	fetch(&e->told, &e->last_told, sizeof(e->last_told));
+	hear(e, &e->last_told);
 	memcpy(e->from, e->held ? e->pulser.put : e->to, sizeof(e->from));
 	memcpy(e->to, e->last_told.target, sizeof(e->to));
 	heed_stop(e);
@@ -325,12 +314,14 @@ int64_t edges_next_ns(int64_t now_ns, int64_t period_ns)
 static void *run(void *arg)
 {
 	struct edges *e = arg;
+	const struct stamped told = told_of(e);
+	struct edges_told first;
 	int64_t next;
 
 	be_real(e);
 	sem_post(&e->ready);
 	learn_quickest(e);
-	while (!atomic_load(&e->quit) && atomic_load(&e->told.n) == 0)
+	while (!atomic_load(&e->quit) && !stamped_last(&told, 1, &first))
 		sleep_until(clock_ns(CLOCK_MONOTONIC) + IDLE_NS);
 	/* The cycle wakes half a period before; daemon/setup/clock.h. */
 	next = edges_next_ns(clock_ns(CLOCK_MONOTONIC), e->c.period_ns);

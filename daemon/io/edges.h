@@ -45,6 +45,7 @@ struct edges_config {
 struct edges_told {
 	int32_t target[IO_NAXES];	/* pulses since the start */
 	uint32_t stop;			/* not 0: no pulses */
+	uint32_t pad;
 };
 
 /* What the thread says, once a slot. */

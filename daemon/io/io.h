@@ -46,6 +46,7 @@ struct io_plc {
 	bool door_closed, level_ok, temperature_ok, no_fire, wire_whole;
 	bool hold;			/* as long as it is true */
 	bool start, reset;		/* asked for, in this period only */
+	bool confirm;			/* ... what the job asks for is done */
 	uint8_t mcode_done;		/* M code carried out; 0: none */
 	uint16_t program;		/* to be loaded; 0: none */
 	double override;		/* 1: as programmed */
@@ -96,6 +97,8 @@ struct io_inputs {
 	struct io_plc plc;
 	struct io_generator generator;
 	int32_t actual[IO_NAXES];	/* pulses, measured or last written */
+	int32_t own[IO_NAXES];		/* pulses from the drive's own zero, if
+					 * it keeps one without power */
 };
 
 /* What the cycle wants, once a period. */

@@ -35,6 +35,8 @@ struct plc_tell {
 	uint32_t job;			/* program n; 0: none */
 	uint32_t line;			/* of the source text */
 	int32_t pos[PLC_NAXES];		/* pulses */
+	uint8_t stand;			/* enum stand_reason */
+	uint32_t stand_of;		/* words/stands.h */
 };
 
 /* What the PLC asks for. */

@@ -167,6 +167,7 @@ void plc_link_read(struct plc_link *l, struct io_plc *ret)
 	ret->hold = a->command & PLC_HOLD;
 	ret->start = edges & PLC_START;
 	ret->reset = edges & PLC_RESET;
+	ret->confirm = edges & PLC_DONE;
 	ret->door_closed = a->locks & PLC_DOOR;
 	ret->level_ok = a->locks & PLC_LEVEL;
 	ret->temperature_ok = a->locks & PLC_TEMPERATURE;

@@ -47,6 +47,10 @@ PLC_POSITION(S, 5, "B", 0, 0) \
 PLC_POSITION(S, 6, "C", 4, 4) \
 PLC_POSITION(S, 7, "U", 0, 0) \
 PLC_POSITION(S, 8, "V", 0, 0) \
+S(0x2000, 9, U8, TELL, stand, 0, 0, 0, 255, "Stand", "", 1, \
+  "why the job stands, or what it waits for; 0: neither") \
+S(0x2000, 10, U32, TELL, stand_of, 0, 0, 0, 4294967295, "StandOf", "", 1, \
+  "what `Stand` is about: the number of the electrode to put in") \
 S(0x2100, 1, U8, ASK, command, 1, 0, 0, 255, "Command", "", 1, "bits") \
 S(0x2100, 2, U8, ASK, locks, 1, 1, 0, 31, "Interlocks", "", 1, \
   "bits, each 1 while all is well") \
@@ -76,6 +80,8 @@ B(PERMIT,      "Command", 0, "Permit", "1: sparks and motion are allowed") \
 B(START,       "Command", 1, "Start", "rising edge: start, or go on") \
 B(HOLD,        "Command", 2, "Hold", "1: the machine is held") \
 B(RESET,       "Command", 3, "Reset", "rising edge: from a fault to hold") \
+B(DONE,        "Command", 4, "Done", \
+  "rising edge: what the machine asks for is done; Start goes on") \
 B(ALIVE,       "Command", 7, "Alive", "to be turned within each `alive_ms`") \
 B(DOOR,        "Interlocks", 0, "DoorClosed", "1: the door is closed") \
 B(LEVEL,       "Interlocks", 1, "LevelOk", "1: dielectric covers the work") \
@@ -150,7 +156,7 @@ PLC_MAPPED(O, TPDO3, 0x1a02, 2, 0x2001, 2, 32) \
 O(0x1a03, 0, U8, 2, FIXED, "TPDO4 mapping, objects") \
 PLC_MAPPED(O, TPDO4, 0x1a03, 1, 0x2001, 3, 32) \
 PLC_MAPPED(O, TPDO4, 0x1a03, 2, 0x2001, 6, 32) \
-O(0x2000, 0, U8, 8, FIXED, "Machine, highest sub-index") \
+O(0x2000, 0, U8, 10, FIXED, "Machine, highest sub-index") \
 O(0x2001, 0, U8, 8, FIXED, "Positions, highest sub-index") \
 O(0x2100, 0, U8, 6, FIXED, "PLC, highest sub-index")
 

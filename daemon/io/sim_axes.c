@@ -115,6 +115,7 @@ double sim_axis(const struct sim *s, int i)
 void sim_axes_measure(struct sim *s, struct io_inputs *in)
 {
 	memcpy(in->actual, s->out.target, sizeof(in->actual));
+	memcpy(in->own, s->out.target, sizeof(in->own));
 	for (int i = 0; i < IO_NAXES && !s->exact; i++)
 		in->actual[i] = (int32_t)lround(s->axis[i] +
 				s->p.measure_pulses * rng_normal(&s->rng));

@@ -8,6 +8,8 @@
 #ifndef JOBS_JOBS_H
 #define JOBS_JOBS_H
 
+#include "asks.h"
+#include "begun.h"
 #include "calls.h"
 #include "checkpoint.h"
 #include "config.h"
@@ -40,7 +42,9 @@ struct jobs {
 	struct twin twin;
 	struct uploads uploads;
 	struct replies replies;
+	struct begun begun;
 	struct queue queue;
+	struct asks asks;
 	struct tally tally;
 	struct calls calls;
 	struct eta eta;

@@ -284,21 +284,6 @@ static void follow_hunting(struct jobs *j, const struct shm_event *e)
 	}, "job %s: " HUNTING_WHAT "; " HUNTING_ADVICE, q->job.name, e->code);
 }
 
-/* A person is to turn knobs. */
-static void follow_hand(struct jobs *j, const struct shm_event *e)
-{
-	struct queue *q = &j->queue;
-	char names[96];
-
-	if (!q->job.n || e->program != q->job.n)
-		return;
-	jobs_note(j, &(struct jobs_note) {
-		.kind = "warning", .job = q->job.id, .outcome = "by-hand",
-		.place_mm = e->place_mm,
-	}, "job %s: " PROCESS_HAND, q->job.name,
-		  process_names(e->id, names, sizeof(names)));
-}
-
 /* A service that has come reads all of edmd's events again.  Most are known by
  * their time in the store; these are by their number. */
 static bool is_old(struct jobs *j)
@@ -323,8 +308,8 @@ void queue_event(struct jobs *j, const struct shm_event *e)
 	tally_event(j, e, link_is_repeat(&j->link));
 	if (e->kind == SHM_EV_HUNTING && !is_old(j))
 		follow_hunting(j, e);
-	if (e->kind == SHM_EV_HAND && !is_old(j))
-		follow_hand(j, e);
+	if (e->kind == SHM_EV_STAND && !is_old(j))
+		asks_event(j, e);
 	if (e->kind == SHM_EV_SELECT && !is_old(j))
 		follow_select(j, (uint32_t)e->code);
 	queue_ended_event(q, e);

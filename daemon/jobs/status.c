@@ -20,7 +20,9 @@ static uint64_t key_of(const struct jobs *j)
 	       (uint64_t)(s->fault & 255) << 48 |
 	       (uint64_t)(*store_why(j->store) != 0) << 47 |
 	       (uint64_t)j->queue.job.state << 44 |
-	       (uint64_t)(j->queue.behind & 0xfff) << 32 | j->queue.job.n;
+	       (uint64_t)(j->queue.behind & 0xfff) << 32 |
+	       (uint64_t)(s->stand & 15) << 28 |
+	       (uint64_t)s->confirmed << 27 | (j->queue.job.n & 0x7ffffff);
 }
 
 static void name_condition(char to[16], const struct shm_snapshot *s)
@@ -127,6 +129,9 @@ void status_tick(struct jobs *j, int64_t now_us)
 	w.interrupted = j->interrupted;
 	w.axes = jobs_axes(j->config->axes.present, axes);
 	w.lost = j->link.state == LINK_OK ? interrupt_lost(j) : "";
+	w.asks = asks_text(j);
+	w.stand = *w.asks ? asks_name(j) : "";
+	w.stand_s = asks_stood_s(j);
 	jobs_lcm_status(j->lcm, &w);
 }
 

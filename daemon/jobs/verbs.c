@@ -100,6 +100,8 @@ static const char *refusal(int code)
 		[SHM_NO_POWER] = "an axis cannot have power: safe torque "
 				 "off, its supply or its enable input; "
 				 "repair that, then ask again",
+		[SHM_NOT_ASKED] = "that is not what the machine asks for; "
+				  "status says what it does",
 		[SHM_STILL_THERE] = "what caused the fault is still there; "
 				    "edmctl alarms says what clears it",
 	};
@@ -152,6 +154,15 @@ static const char *state_words(uint32_t state)
 static void verb_stand(struct jobs *j, const struct verb *v,
 		       const struct jobs_lcm_command *c);
 
+/* A start, and nobody has confirmed. */
+static void refuse_asks(struct jobs *j, const struct jobs_lcm_command *c)
+{
+	char reason[ASKS_TEXT_MAX + 40];
+
+	snprintf(reason, sizeof(reason), "not before this: %s", asks_text(j));
+	verbs_answer(j, c, REFUSED, reason);
+}
+
 static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
@@ -162,8 +173,12 @@ static void on_answer(void *arg, int code)
 	if (a->verb->machine == SHM_DO_START ||
 	    a->verb->machine == SHM_DO_RESUME)
 		queue_started(j, code);
+	if (code == SHM_DONE && begun_is(a->verb))
+		begun_keep(j, &a->by);
+	if (code == SHM_DONE && a->verb->machine == SHM_DO_CONFIRM)
+		asks_confirmed(j);
 	if (code == SHM_DONE)
-		verbs_answer(j, &c, 0, "done");
+		verbs_answer(j, &c, 0, begun_is(a->verb) ? "begun" : "done");
 	else if (gone(code))
 		verbs_answer(j, &c, EX_UNAVAILABLE, gone(code));
 	else if (code == -ESHUTDOWN)
@@ -184,6 +199,8 @@ static void on_answer(void *arg, int code)
 		       "open_v < ignition_v must hold" :
 		       "edmd refused the value; it must be finite and in "
 		       "range");
+	else if (code == SHM_ASKS)
+		refuse_asks(j, &c);
 	else if (refusal(code))
 		verbs_answer(j, &c, REFUSED, refusal(code));
 	else {
@@ -312,6 +329,7 @@ static void verb_machine(struct jobs *j, const struct verb *v,
 static void verb_stand(struct jobs *j, const struct verb *v,
 		       const struct jobs_lcm_command *c)
 {
+	asks_held(j, c);
 	queue_keep(j);
 	mdi_give_up(j);
 	verb_machine(j, v, c);
@@ -406,6 +424,14 @@ static void verb_step(struct jobs *j, const struct verb *v,
 		verbs_answer(j, c, EX_DATAERR,
 			     "no such number of nodes; 1 to 100 ahead, -1 to "
 			     "-100 back");
+}
+
+/* The number of what is done; 0 where it has none. */
+static void verb_done(struct jobs *j, const struct verb *v,
+		      const struct jobs_lcm_command *c)
+{
+	asks_held(j, c);
+	verb_machine(j, v, c);
 }
 
 static void verb_override(struct jobs *j, const struct verb *v,
@@ -629,6 +655,8 @@ static const struct verb verbs[] = {
 	  "nothing" },
 	{ "reset", ROLE_OPERATOR, VERB_ACTS, verb_machine, SHM_DO_RESET,
 	  "a fault" },
+	{ "done", ROLE_OPERATOR, VERB_ACTS, verb_done, SHM_DO_CONFIRM,
+	  "a job that asks for something" },
 	{ "step", ROLE_OPERATOR, VERB_ACTS, verb_step, SHM_DO_STEP,
 	  "a job held on its path" },
 	{ "jog", ROLE_OPERATOR, VERB_ACTS, verb_jog, SHM_DO_JOG,
@@ -649,6 +677,7 @@ static const struct verb verbs[] = {
 	{ "mdi", ROLE_OPERATOR, VERB_ACTS, mdi_take, VERB_OWN, "" },
 	{ "offsets", ROLE_VIEWER, VERB_ASKS, offset_list, VERB_OWN, "" },
 	{ "offset", ROLE_OPERATOR, VERB_ACTS, offset_set, VERB_OWN, "" },
+	{ "moved", ROLE_VIEWER, VERB_ASKS, begun_tell, VERB_OWN, "" },
 	{ "why", ROLE_VIEWER, VERB_ASKS, verbs_why, VERB_OWN, "" },
 	{ "values", ROLE_VIEWER, VERB_ASKS, verbs_values, VERB_OWN, "" },
 	{ "trail", ROLE_VIEWER, VERB_ASKS, verbs_trail, VERB_OWN, "" },

@@ -44,7 +44,7 @@ static const char *why_none(const struct jobs *j)
 }
 
 /* The job in the machine. */
-static const char *why_loaded(const struct jobs *j)
+static const char *why_loaded(struct jobs *j)
 {
 	switch (j->queue.job.state) {
 	case JOB_READY:
@@ -53,8 +53,8 @@ static const char *why_loaded(const struct jobs *j)
 		return j->queue.job.hold || j->queue.waiting ?
 		       "it is ready; edmctl start begins it" : "";
 	case JOB_HELD:
-		return "it is held; edmctl start or edmctl resume goes on, "
-		       "edmctl stop ends it";
+	case JOB_RUNNING:
+		return asks_text(j);
 	case JOB_FAULT:
 		return "a fault is latched; edmctl alarms says what clears it";
 	default:
@@ -77,7 +77,7 @@ static bool is_waited_for(const struct queue *q, const struct store_job *job)
 	return q->job.n && q->job.n != job->n && !queue_is_leaving(q);
 }
 
-const char *waits_why(const struct jobs *j, const struct store_job *job,
+const char *waits_why(struct jobs *j, const struct store_job *job,
 		      char *to, size_t size)
 {
 	const struct queue *q = &j->queue;

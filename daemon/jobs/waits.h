@@ -17,7 +17,7 @@
  *
  * Return: @to; "" if the job runs, or begins in a moment.
  */
-const char *waits_why(const struct jobs *j, const struct store_job *job,
+const char *waits_why(struct jobs *j, const struct store_job *job,
 		      char *to, size_t size);
 
 #endif /* JOBS_WAITS_H */

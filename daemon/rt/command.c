@@ -38,6 +38,8 @@ static enum cycle_answer do_start(struct cycle *c, double arg_mm)
 		return ANSWER_NO_PROGRAM;
 	if (!stands_held(c))
 		return ANSWER_WRONG_STATE;
+	if (stand_asks(c))
+		return ANSWER_ASKS;
 	if (c->limit.on)
 		return ANSWER_AT_LIMIT;
 	if (c->manual.unplaced ||
@@ -68,6 +70,7 @@ static enum cycle_answer do_hold(struct cycle *c, double arg_mm)
 		return ANSWER_WRONG_STATE;
 	c->hold.moving = false;
 	axes_forget(c);
+	stand_begin(c, STAND_COMMAND, 0);
 	cycle_happen(c, EVENT_HOLD);
 	return ANSWER_DONE;
 }
@@ -110,7 +113,9 @@ static enum cycle_answer do_retract(struct cycle *c, double arg_mm)
 	answer = may_begin(c);
 	if (answer != ANSWER_DONE)
 		return answer;
+	stand_begin(c, STAND_COMMAND, 0);
 	cycle_happen(c, EVENT_HOLD);
+	moved_begin(c);
 	axes_want(c, go_back, arg_mm);
 	return ANSWER_DONE;
 }
@@ -131,6 +136,8 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 		return ANSWER_NO_PROGRAM;
 	if (!stands_held(c) || escape_is_out(&c->escape))
 		return ANSWER_WRONG_STATE;
+	if (arg_mm > 0 && stand_asks(c))
+		return ANSWER_ASKS;
 	answer = (enum cycle_answer)step_to(c, arg_mm, &to_mm);
 	if (answer == ANSWER_DONE)
 		answer = may_begin(c);
@@ -138,8 +145,16 @@ static enum cycle_answer do_step(struct cycle *c, double arg_mm)
 		return answer;
 	if (c->manual.unplaced)
 		return ANSWER_NOT_HOMED;
+	moved_begin(c);
 	axes_want(c, go_to_node, arg_mm);
 	return ANSWER_DONE;
+}
+
+static enum cycle_answer do_confirm(struct cycle *c, double of)
+{
+	if (!c->loaded)
+		return ANSWER_NO_PROGRAM;
+	return stand_confirm(c, of) ? ANSWER_DONE : ANSWER_NOT_ASKED;
 }
 
 static enum cycle_answer do_estop(struct cycle *c, double arg_mm)
@@ -189,6 +204,7 @@ static enum cycle_answer (*const verbs[CYCLE_NVERBS])(struct cycle *,
 	[CYCLE_RESET]	= do_reset,
 	[CYCLE_OVERRIDE] = do_override,
 	[CYCLE_STEP]	= do_step,
+	[CYCLE_CONFIRM]	= do_confirm,
 };
 
 static enum cycle_answer do_set(struct cycle *c, const struct cycle_command *m)
@@ -220,6 +236,7 @@ static enum cycle_answer do_manual(struct cycle *c,
 	if (answer != ANSWER_DONE)
 		return answer;
 	cycle_enter(c, jog ? STATE_JOG : STATE_HOME);
+	moved_begin(c);
 	axes_want(c, NULL, 0);
 	return ANSWER_DONE;
 }
@@ -234,6 +251,7 @@ static enum cycle_answer do_press(struct cycle *c,
 
 	if (begun) {
 		cycle_enter(c, STATE_JOG);
+		moved_begin(c);
 		axes_want(c, NULL, 0);
 	}
 	return (enum cycle_answer)answer;
@@ -265,6 +283,8 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 		return ANSWER_BAD_ARGUMENT;
 	c->out.path++;
 	c->loaded = true;
+	stand_end(c);
+	stand_begin(c, STAND_READY, 0);
 	c->outcome = OUTCOME_NONE;
 	c->totals = (struct cycle_totals) { 0 };
 	c->far_mm = far_mm;

@@ -90,8 +90,10 @@ static enum cycle_event look(struct cycle *c)
 {
 	const bool powered = state_duty[c->state].power;
 
-	if (asking_hand(c))
+	if (asking_hand(c)) {
+		stand_begin(c, STAND_SETTING, c->asking.stands);
 		return EVENT_HOLD;
+	}
 	if (asking_waits(c))
 		return !escape_is_out(&c->escape) && walk_positions(c) ?
 		       EVENT_FREE : EVENT_NONE;
@@ -132,8 +134,9 @@ static void stand(struct cycle *c)
 		cycle_end_job(c, OUTCOME_STOPPED);
 }
 
-static void stand_held(struct cycle *c)
+static void stand_held(struct cycle *c, enum stand_reason why, uint32_t of)
 {
+	stand_begin(c, why, of);
 	cycle_happen(c, EVENT_HOLD);
 	mover_set(&c->mover, 0);
 }
@@ -167,11 +170,18 @@ static void meet_action(struct cycle *c)
 		mover_set(&c->mover, 0);
 		break;
 	case ACTION_HOLD:
-		stand_held(c);
+		stand_held(c, STAND_STOP, 0);
+		break;
+	case ACTION_OPTIONAL:
+		stand_held(c, STAND_OPTIONAL, 0);
+		break;
+	case ACTION_ELECTRODE:
+		stand_held(c, STAND_ELECTRODE, c->cursor.seg.arg &
+						~INTERP_ELECTRODE_STOP);
 		break;
 	case ACTION_END:
 		if (c->config.hold_at_end)
-			stand_held(c);
+			stand_held(c, STAND_END, 0);
 		else if (contouring_rests(&c->contouring))
 			cycle_end_job(c, OUTCOME_DONE);
 		else
@@ -284,8 +294,10 @@ static void give(struct cycle *c, struct io_outputs *out)
 static void go_manually(struct cycle *c, const struct io_inputs *in)
 {
 	c->feed_mm_s = 0;
-	if (cycle_is_manual(c) && manual_go(c, in))
-		cycle_enter(c, c->fault.latched ? STATE_FAULT : STATE_IDLE);
+	if (!cycle_is_manual(c) || !manual_go(c, in))
+		return;
+	c->moved.there = !c->manual.halt;
+	cycle_enter(c, c->fault.latched ? STATE_FAULT : STATE_IDLE);
 }
 
 /* The machine is held until the axes have power and stand on their places. */
@@ -350,5 +362,6 @@ void cycle_step(struct cycle *c, const struct io_inputs *in,
 		c->overruns_in_row = 0;
 	c->overran = false;
 	asking_step(c, in);
+	moved_watch(c);
 	give(c, out);
 }

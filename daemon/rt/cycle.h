@@ -36,10 +36,12 @@
 #include "path/ground.h"
 #include "path/mcode.h"
 #include "path/mover.h"
+#include "moved.h"
 #include "gap/conditions.h"
 #include "gap/retract.h"
 #include "gap/servo.h"
 #include "settings.h"
+#include "stand.h"
 #include "state.h"
 #include "path/probe.h"
 #include "path/progress.h"
@@ -100,7 +102,7 @@ struct cycle_command {
 	uint32_t arg;			/* set: enum interp_tech_id; jog, home:
 					 * enum interp_axis */
 	double arg_mm;			/* set: the field's own unit; override:
-					 * a factor; step: a number */
+					 * a factor; step, confirm: a number */
 };
 
 /* The answer to a command. */
@@ -121,6 +123,10 @@ enum cycle_answer {
 	ANSWER_LOCKED,			/* a guard or the PLC forbids it */
 	ANSWER_STILL_THERE,		/* reset: the cause is still there */
 	ANSWER_NO_POWER,		/* an axis cannot have power now */
+	ANSWER_ASKS,			/* start: what the stand asks for was
+					 * not confirmed */
+	ANSWER_NOT_ASKED,		/* confirm: the stand does not ask for
+					 * that */
 	CYCLE_NANSWERS
 };
 
@@ -223,6 +229,7 @@ struct cycle {
 	struct servo servo;
 	struct arcing arcing;
 	struct asking asking;
+	struct stand stand;
 	struct flush flush;
 	struct probe probe;
 	struct mover mover;		/* speed along the path or the escape */
@@ -231,6 +238,7 @@ struct cycle {
 	struct resync resync;		/* from where they stand to the path */
 	struct cycle_ahead ahead;
 	struct manual manual;		/* motion without a program */
+	struct moved moved;		/* the motion asked for last */
 	struct limit limit;
 	struct comp comp;		/* from places to pulses */
 	struct contouring contouring;	/* for axes that lag */

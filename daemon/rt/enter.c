@@ -92,6 +92,7 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 void cycle_start(struct cycle *c, double unused)
 {
 	(void)unused;
+	stand_end(c);
 	cycle_set_off(c);
 }
 
@@ -99,6 +100,7 @@ void cycle_end_job(struct cycle *c, enum cycle_outcome o)
 {
 	c->outcome = o;
 	c->loaded = false;
+	stand_end(c);
 	resync_settle(c);
 	c->escape = (struct escape) { .nlegs = 0 };
 	cycle_enter(c, STATE_IDLE);
@@ -204,6 +206,7 @@ void cycle_fail(struct cycle *c)
 void cycle_reset(struct cycle *c)
 {
 	fault_clear(&c->fault);
+	stand_begin(c, STAND_RESET, 0);
 	cycle_happen(c, EVENT_RESET);
 	if (!c->loaded)
 		cycle_enter(c, STATE_IDLE);

@@ -170,7 +170,10 @@ bool feed_done(struct cycle *c)
 		return jump_done(c);
 	if (c->state == STATE_PROBE)
 		return c->probe.phase == PROBE_DONE;
-	if (c->state == STATE_HOLD && c->hold.moving && there(c, c->hold.to_mm))
+	if (c->state == STATE_HOLD && c->hold.moving &&
+	    there(c, c->hold.to_mm)) {
 		c->hold.moving = false;
+		c->moved.there = true;
+	}
 	return false;
 }

@@ -72,8 +72,13 @@ void interlock_obey(struct cycle *c)
 		return;
 	if (c->plc.reset)
 		command(c, CYCLE_RESET, 0);
-	if (c->plc.hold && (!c->plc_held || state_duty[c->state].running))
+	if (c->plc.hold && (!c->plc_held || state_duty[c->state].running)) {
+		if (c->loaded)
+			stand_begin(c, STAND_PLC, 0);
 		command(c, CYCLE_HOLD, 0);
+	}
+	if (c->plc.confirm)
+		command(c, CYCLE_CONFIRM, c->stand.of);
 	/* Another client may set the override too: the last change counts. */
 	if (c->plc.override != c->plc_override)
 		command(c, CYCLE_OVERRIDE, c->plc.override);

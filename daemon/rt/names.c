@@ -26,6 +26,8 @@ static const char *const answers[CYCLE_NANSWERS] = {
 	[ANSWER_LOCKED]		= "a guard or the PLC does not permit it",
 	[ANSWER_STILL_THERE]	= "what caused the fault is still there",
 	[ANSWER_NO_POWER]	= "an axis cannot have power",
+	[ANSWER_ASKS]		= "it asks for something that nobody confirmed",
+	[ANSWER_NOT_ASKED]	= "that is not asked for",
 };
 
 const char *cycle_outcome_name(enum cycle_outcome o)

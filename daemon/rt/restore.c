@@ -113,6 +113,8 @@ enum cycle_restored cycle_restore(struct cycle *c,
 	c->out.pump = past->pump;
 	restore_actions(c);
 	restore_mcode(c, past);
+	c->stand = past->stand;
+	stand_begin(c, STAND_RESTART, 0);
 	if (isfinite(past->back_mm))
 		c->back_mm = fmax(c->back_mm, past->back_mm);
 	if (isfinite(past->sure_mm))

@@ -19,8 +19,6 @@
 #define CLAIM_TRIES	8		/* somebody else may remove it
 					 * meanwhile */
 
-/* A view of a record that may alias anything. */
-typedef uint64_t __attribute__((may_alias)) word_t;
 
 int object_path(char path[OBJECT_PATH_MAX], const char *machine,
 		const char *what)
@@ -218,30 +216,6 @@ void object_thread_end(pthread_t thread, int end)
 	if (write(end, &one, sizeof(one)) != sizeof(one))
 		abort();
 	pthread_join(thread, NULL);
-}
-
-/*
- * A record under a sequence number may be written while it is read; the
- * sequence shows this afterwards.  In C11 that is a data race unless every word
- * is atomic.  Release and acquire on the words also keep the order against the
- * stamps, on any processor and without a fence.  On x86 they are plain moves.
- */
-void object_words_put(void *shared, const void *from, size_t bytes)
-{
-	word_t *to = shared;
-	const word_t *w = from;
-
-	for (size_t i = 0; i < bytes / sizeof(*w); i++)
-		__atomic_store_n(&to[i], w[i], __ATOMIC_RELEASE);
-}
-
-void object_words_get(void *to, const void *shared, size_t bytes)
-{
-	const word_t *from = shared;
-	word_t *w = to;
-
-	for (size_t i = 0; i < bytes / sizeof(*w); i++)
-		w[i] = __atomic_load_n(&from[i], __ATOMIC_ACQUIRE);
 }
 
 void shm_close(const void *object, size_t bytes)

@@ -2,7 +2,7 @@
 /*
  * object.h - what the shared objects have in common: name, head, mapping
  *
- * Private to this folder.  Startup only, except object_words_...().
+ * Private to this folder.  Startup only.
  */
 #ifndef EDM_SHM_OBJECT_H
 #define EDM_SHM_OBJECT_H
@@ -72,11 +72,5 @@ int object_open(void **ret, const char *machine, const char *what,
 
 /** object_thread_end() - tell it by the eventfd @end, and wait for it. */
 void object_thread_end(pthread_t thread, int end);
-
-/** object_words_put() - to shared memory; @bytes is a multiple of 8. */
-void object_words_put(void *shared, const void *from, size_t bytes);
-
-/** object_words_get() - from shared memory. */
-void object_words_get(void *to, const void *shared, size_t bytes);
 
 #endif /* EDM_SHM_OBJECT_H */

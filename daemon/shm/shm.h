@@ -48,10 +48,9 @@
 #include <stdint.h>
 
 #include <ck_ring.h>
-#include <ck_sequence.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	10
+#define SHM_LAYOUT	11
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NAME_MAX	32
 #define SHM_PATH_MAX	96
@@ -62,6 +61,8 @@
 #define SHM_DONE_SLOTS		256	/* commands that are remembered */
 #define SHM_ENDED_SLOTS		64	/* jobs that ended; a power of two */
 #define SHM_LATENCY_BINS	256	/* of 1 us; the last holds all above */
+#define SHM_TOOK_PARTS		128	/* bins of this part of a period ... */
+#define SHM_TOOK_BINS		256	/* ... up to two periods; likewise */
 
 struct shm_head {
 	uint32_t magic;
@@ -80,6 +81,15 @@ enum shm_state {
 };
 #undef SHM_STATE_NUMBER
 
+/* The same numbers as enum moved_how. */
+enum shm_moved {
+	SHM_MOVED_NOT,
+	SHM_MOVED_GOES_ON,
+	SHM_MOVED_THERE,
+	SHM_MOVED_SHORT,
+	SHM_MOVED_FAULT
+};
+
 struct shm_snapshot {
 	uint64_t cycle;			/* since edmd started */
 	int64_t time_ns;		/* CLOCK_REALTIME of this cycle */
@@ -89,6 +99,9 @@ struct shm_snapshot {
 	uint32_t outcome;		/* enum cycle_outcome of the last job */
 	uint32_t program;		/* program.<n>, until unloaded; or 0 */
 	uint32_t seg, tick;		/* place, exactly */
+	uint64_t moved_by;		/* id of the command whose motion began
+					 * last; 0: none */
+	uint32_t moved, pad4;		/* how it ended; enum shm_moved */
 	uint64_t faults;		/* all that are latched: bit n, fault
 					 * n */
 	uint32_t line;			/* of the source */
@@ -114,7 +127,8 @@ struct shm_snapshot {
 					 * there are in the present row */
 	uint32_t arcs;			/* times that the share of arcs was
 					 * above arcing_share */
-	uint32_t pad3;
+	uint32_t stand;			/* why the job stands or waits now; enum
+					 * stand_reason */
 	double retract_mm_max;
 	double energy_j;		/* of the discharges; NAN: the machine
 					 * does not count it */
@@ -149,7 +163,12 @@ struct shm_snapshot {
 					 * is not answered; 0: none */
 	uint8_t homed;			/* bit per axis */
 	bool has_origin;
-	uint8_t pad2;
+	bool confirmed;			/* what the stand asks for is done */
+	uint32_t stand_of;		/* the electrode's number; a bit of each
+					 * field to set */
+	uint32_t kept_stand, kept_of;	/* the same of the job, also while a
+					 * fault is latched */
+	uint64_t stand_cycles;		/* how long */
 };
 
 /* What SHM_DO_SET has set in a job; written when it changes. */
@@ -190,9 +209,9 @@ enum shm_event_kind {
 	SHM_EV_SET,			/* id: the field, enum interp_tech_id */
 	SHM_EV_SELECT,			/* by the PLC; code: job n */
 	SHM_EV_HUNTING,			/* code: retracts in a row */
-	SHM_EV_HAND,			/* it stands until a person has set
-					 * fields; id: a bit of each, enum
-					 * interp_tech_id */
+	SHM_EV_STAND,			/* the job stands or waits; code: enum
+					 * stand_reason, NONE: no longer; id:
+					 * what it is about */
 };
 
 struct shm_event {
@@ -209,8 +228,8 @@ struct shm_event {
 
 /*
  * A ring that one writer fills and any number of readers follow at their own
- * pace.  Slot i holds record number n when its stamp is 2n + 2; an odd stamp
- * is being written.  A reader that fell behind skips and is told how many.
+ * pace: common/stamped.h.  A reader that fell behind skips records, and is told
+ * how many.
  */
 struct shm_trace_slot {
 	uint64_t stamp;
@@ -262,14 +281,15 @@ struct shm_done_slot {
  * so that a writer killed in the middle of one leaves the other.
  */
 struct shm_snap {
-	ck_sequence_t seq;
-	struct shm_snapshot s;
+	uint64_t stamp;
+	struct shm_snapshot record;
 };
 
 struct shm_status {
 	struct shm_head head;
 	uint64_t born;			/* drawn when the object was made */
 	uint32_t latency_us[SHM_LATENCY_BINS];	/* histogram of wake_late */
+	uint32_t took[SHM_TOOK_BINS];	/* and of what each period took */
 	struct shm_snap snap[2];
 	uint64_t snap_next;		/* snapshots written so far */
 	uint64_t trace_next;		/* records written so far */
@@ -301,6 +321,8 @@ enum shm_answer {
 	SHM_NOT_HOMED, SHM_AT_LIMIT, SHM_BEYOND, SHM_NO_NODE, SHM_NOT_PASSED,
 	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED, SHM_STILL_THERE,
 	SHM_NO_POWER,
+	SHM_ASKS,
+	SHM_NOT_ASKED,
 	/* Not of the cycle: */
 	SHM_LATE = 50,			/* came after its until_ns: not done */
 	SHM_CUT_SHORT,			/* edmd ended while it did it; the place

@@ -19,6 +19,12 @@
 
 #define CREATE_TRIES	8
 
+/* The descriptors that hold the locks of the status made last. */
+static struct {
+	const struct shm_status *of;
+	int status, owner;
+} locks;
+
 static uint32_t instance_draw(void)
 {
 	uint32_t n = 0;
@@ -50,14 +56,12 @@ static bool status_fits(const struct shm_status *s, const char *machine)
 
 /*
  * The snapshots stay until the first new one, so an edmd that is killed before
- * that loses nothing.  A slot that the dead edmd was writing has an odd
- * sequence.  The next write would make it even in the middle of writing.
+ * that loses nothing.
  */
 static void status_adopt(struct shm_status *s)
 {
 	memset(s->latency_us, 0, sizeof(s->latency_us));
-	for (int i = 0; i < 2; i++)
-		s->snap[i].seq.sequence += s->snap[i].seq.sequence & 1;
+	memset(s->took, 0, sizeof(s->took));
 }
 
 /* If the object cannot be completed, it is removed. */
@@ -108,7 +112,7 @@ static int status_take_over(void **ret, int fd, const char *path,
 	return unlink(path) < 0 && errno != ENOENT ? -errno : -EAGAIN;
 }
 
-/* One try.  If all is well, the descriptor stays open: it holds the lock. */
+/* One try.  Return: the descriptor, which holds the lock. */
 static int status_try(void **ret, const char *path, const char *machine,
 		      struct shm_status **before)
 {
@@ -129,14 +133,14 @@ static int status_try(void **ret, const char *path, const char *machine,
 		close(fd);
 		return err;
 	}
-	return 0;
+	return fd;
 }
 
 int shm_status_create(struct shm_status **ret, const char *machine,
 		      struct shm_snapshot *ret_before)
 {
 	char path[OBJECT_PATH_MAX];
-	int err = object_path(path, machine, "status"), owner;
+	int err = object_path(path, machine, "status"), owner, fd = -EAGAIN;
 	struct shm_status *s, *moved = NULL;
 	void *at = NULL;
 
@@ -145,13 +149,12 @@ int shm_status_create(struct shm_status **ret, const char *machine,
 	owner = object_claim(machine, "owner");
 	if (owner < 0)
 		return owner;
-	err = -EAGAIN;
-	for (int i = 0; i < CREATE_TRIES && err == -EAGAIN; i++)
-		err = status_try(&at, path, machine, &moved);
+	for (int i = 0; i < CREATE_TRIES && fd == -EAGAIN; i++)
+		fd = status_try(&at, path, machine, &moved);
 	free(moved);
-	if (err < 0) {
+	if (fd < 0) {
 		close(owner);
-		return err;
+		return fd;
 	}
 
 	s = at;
@@ -162,6 +165,9 @@ int shm_status_create(struct shm_status **ret, const char *machine,
 	status_adopt(s);
 	object_head_fill(&s->head, machine, sizeof(*s), instance_draw());
 	*ret = s;
+	locks.of = s;
+	locks.status = fd;
+	locks.owner = owner;
 	return 0;
 }
 
@@ -175,6 +181,11 @@ void shm_status_destroy(struct shm_status *s, const char *machine)
 		unlink(path);
 	if (object_path(path, machine, "owner") == 0)
 		unlink(path);
+	if (locks.of == s) {
+		close(locks.status);
+		close(locks.owner);
+		locks.of = NULL;
+	}
 	shm_close(s, sizeof(*s));
 }
 

@@ -112,9 +112,9 @@ F(DIELECTRIC, "dielectric", FAULT_BRAKES, false, FAULT_IN_POWER, \
   "its level switch; where a PLC watches the level, any motion needs it", \
   "fill up; " FAULT_RESET) \
 F(HOME, "home-not-found", FAULT_ENDS, false, FAULT_IN_JOB, \
-  "homing met no switch or no index mark on the whole travel", \
-  "the switch or its wiring, or home_dir in the machine file", \
-  "edmctl reset; repair it; edmctl home") \
+  "homing met no switch or no index mark, or the drive's own place is out of the travel", \
+  "the switch or its wiring, or home_dir, home_at_mm or home_search_mm in the machine file", \
+  "edmctl reset; repair it, or jog the axis onto its switch; edmctl home") \
 F(NO_CONTACT, "no-contact", FAULT_BRAKES, false, FAULT_IN_JOB, \
   "a probing motion met nothing", \
   "it came to its end, or to the end of the travel: the work stands elsewhere", \

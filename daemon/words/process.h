@@ -75,10 +75,6 @@ double process_nearest(const struct process_delivers *d, int field,
 void process_range_text(const struct process_delivers *d, int field, char *buf,
 			size_t size);
 
-/* %s: names of fields. */
-#define PROCESS_HAND	"it stands: set %s of the condition at the generator, " \
-			"then start"
-
 /** process_names() - of a set of fields, a bit each, into @buf; returns it. */
 const char *process_names(uint64_t fields, char *buf, size_t size);
 

@@ -175,6 +175,7 @@ struct manual_axis {
 	double home_fast_mm_s, home_slow_mm_s;
 	double home_at_mm;		/* the place of the switch */
 	double home_back_mm;
+	double home_search_mm;		/* beyond where it ought to be found */
 	uint32_t home_order;		/* lowest first */
 };
 

@@ -46,7 +46,10 @@
 	COUNT(hunts) \
 	COUNT(electrode) \
 	NUMBER(electrode_shift_mm) \
-	NUMBER(electrode_wear_mm)
+	NUMBER(electrode_wear_mm) \
+	WORD(stand) \
+	WORD(asks) \
+	NUMBER(stand_s)
 
 #define STATUS_ONE(name)	+ 1
 

@@ -24,7 +24,8 @@
 	V(STEP)		/* held: go on by arg_mm nodes; - goes back */ \
 	V(JOG)		/* idle: axis arg by arg_mm */ \
 	V(HOME)		/* idle: axis arg; 8: all axes */ \
-	V(JOG_ON)	/* axis at arg_mm mm/s while this is repeated */
+	V(JOG_ON)	/* axis at arg_mm mm/s while this is repeated */ \
+	V(CONFIRM)	/* what a stand asks for is done; arg_mm: its number */
 
 /*
  * The argument of JOG_ON.  Only a sign that says so begins a motion.  A press

@@ -10,6 +10,7 @@ import re
 import pytest
 from edmsim import ROOT, run, seeded
 from test_posts import FILES, POSTS, WIRE, dialect_of
+from written import FOLDER, programs
 
 RUNS = int(os.environ.get("EDM_RUNS", 3))
 
@@ -32,9 +33,8 @@ def wire(tmp_path_factory):
     return path
 
 
-def way_of(name, wire, text):
+def way_of(dialect, wire, text):
     """All places in their order; what was said; the exit code."""
-    dialect = dialect_of(name)
     machine = ROOT / "examples/machine.ini" if dialect in SINKERS else wire
     r = run("--machine", machine, "--dialect", dialect, "--dry-run", "--pulses",
             "-", text=text)
@@ -47,6 +47,22 @@ def way_of(name, wire, text):
 
 WORD = re.compile(r"(\([^)]*\)|;.*|<[^>]*>|[A-Za-z])")
 NUMBER = re.compile(r"([+-]?)(\d+)(\.?)(\d*)")
+
+
+# Where a length without a point counts its last decimal: 5.25 and 5250 are one.
+LAST_DECIMAL = ("agievision", "skd2")
+LENGTHS = "XYIJUV"
+
+
+def counted(rnd, line):
+    """Lengths of a line with and without their points, in micrometres."""
+    def other(m):
+        letter, sign, whole, point, rest = m.groups()
+        um = int(whole + (rest or "").ljust(3, "0")) if point else int(whole)
+        return letter + sign + rnd.choice(
+            [f"{um}", f"{um // 1000}.{um % 1000:03d}"])
+    return re.sub(rf"([{LENGTHS}])([+-]?)(\d+)(\.?)(\d{{0,3}})(?!\d)", other,
+                  line)
 
 
 def number(rnd, text, is_code):
@@ -85,13 +101,15 @@ def comment(rnd, line):
     return line
 
 
-def text_of(rnd, text):
+def text_of(rnd, text, dialect):
     end = rnd.choice(["\n", "\r\n"])
     out = []
     for line in text.splitlines():
         if line.startswith("%"):
             out.append(line)
             continue
+        if dialect in LAST_DECIMAL and "(" not in line and ";" not in line:
+            line = counted(rnd, line)
         out.append(comment(rnd, line_of(rnd, line)) +
                    rnd.choice(["", "", " ", "\t"]))
         if rnd.random() < 0.1:
@@ -103,10 +121,26 @@ def text_of(rnd, text):
 def test_a_layout_changes_no_place(name, wire):
     rnd = layouts()
     text = (POSTS / name).read_text()
-    want, said, code = way_of(name, wire, text)
+    want, said, code = way_of(dialect_of(name), wire, text)
     assert not code and want, said
     for i in range(RUNS):
-        new = text_of(rnd, text) if name not in RECORDS else \
+        new = text_of(rnd, text, dialect_of(name)) if name not in RECORDS else \
             text.replace("\n", rnd.choice(["\n", "\r\n", "\n\n"]))
-        got, said, code = way_of(name, wire, new)
+        got, said, code = way_of(dialect_of(name), wire, new)
+        assert not code and got == want, f"{i}: {said}\n{new}"
+
+
+COUNTED = [p for f in FOLDER.glob("*.txt") for p in programs(f)
+           if p.dialect in LAST_DECIMAL and p.kind == "way" and
+           "G70" not in p.text]       # inches count ten thousandths
+
+
+@pytest.mark.parametrize("p", COUNTED, ids=lambda p: p.name)
+def test_a_point_changes_no_place_where_micrometres_are_counted(p, wire):
+    rnd = layouts()
+    want, said, code = way_of(p.dialect, wire, p.text)
+    assert not code and want, said
+    for i in range(4 * RUNS):
+        new = text_of(rnd, p.text, p.dialect)
+        got, said, code = way_of(p.dialect, wire, new)
         assert not code and got == want, f"{i}: {said}\n{new}"

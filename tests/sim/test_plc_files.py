@@ -81,7 +81,8 @@ def test_numbers_have_the_units_of_the_table():
     assert told["Feed"] == pytest.approx(-0.5)
     assert (str(told["State"]), told["Spark"], told["Held"]) == ("erode", 1, 0)
     asked = db.encode_message("PlcRequest", {
-        "Permit": 1, "Start": 0, "Hold": 0, "Reset": 0, "Alive": 1,
+        "Permit": 1, "Start": 0, "Hold": 0, "Reset": 0, "Done": 0,
+        "Alive": 1,
         "DoorClosed": 1, "LevelOk": 1, "TemperatureOk": 1, "NoFire": 1,
         "WireWhole": 1, "FeedOverride": 70, "ProgramSelect": 12,
         "McodeDone": 60, "AxisTemperature": 21.5})

@@ -2,6 +2,7 @@
 """Random contours with other leads, open ones, and several in one program; leads of
 any kind, in all dialects and with a taper; against another geometry.  EDM_SEED repeats a run, EDM_RUNS says how many.
 """
+import math
 import os
 import random
 import re
@@ -14,7 +15,7 @@ from shapely.geometry import LineString, Point
 from test_wire_random import BOUND_MM
 from test_wire_taper import HEIGHT, WIRE, planes, rows_of
 from wire_lead_arcs import Leaning, Led, hausdorff, lead_ways, sound_contour
-from wire_leads import ArcLed, Open, many, words
+from wire_leads import ArcLed, ArcsBehind, Open, Round, many, words
 from wire_oracle import UM, path_of, read_iso, ring_of
 
 RUNS = int(os.environ.get("EDM_RUNS", 25))
@@ -59,6 +60,31 @@ def test_arcs_lead_in_and_out_without_a_gouge(plain):
         if can:
             assert c.left_by(path) < BOUND_MM, about
     assert cut > RUNS / 3
+
+
+def test_arcs_behind_straight_leads_touch_the_contour(plain):
+    """The arcs are led to under the offset, and may begin where they end."""
+    rnd = contours()
+    cut = rounds = 0
+    for i in range(4 * RUNS):
+        led = ArcsBehind(rnd)
+        c = led.contour
+        whole = isinstance(c, Round)
+        if not led.is_free() or not (whole or c.can_be_cut() and
+                                     not c.is_close()):
+            continue
+        ways, said = ways_of(plain, led.text)
+        about = f"contour {i}: {said}\n{led.text}"
+        assert ways, about
+        path = path_of(ways)
+        assert path.distance(c.poly.exterior) >= c.offset - BOUND_MM, about
+        # Beside the leads, and beside all of the contour.
+        assert all(hausdorff(w, path) < LEAD_MM or w.within(path.buffer(
+            LEAD_MM)) for w in led.ways), about
+        assert c.poly.exterior.within(path.buffer(c.offset + BOUND_MM)) \
+            if whole else c.left_by(path) < BOUND_MM, about
+        cut, rounds = cut + 1, rounds + whole
+    assert cut > RUNS and rounds
 
 
 def test_a_part_of_a_contour_is_cut_as_far_as_it_goes(plain):
@@ -124,8 +150,9 @@ def test_leads_from_odd_places(hole, lead, end, found):
     assert not found or found in r.stderr.decode(), r.stderr
 
 
-def test_what_lies_between_two_leads_is_not_left_out_unsaid(plain):
-    """The lead out crosses the lead in, and the wire fits nowhere between."""
+def test_a_circle_between_two_leads_on_arcs_is_gone_round(plain):
+    """The arc behind it is a lead, too: the wire goes round all of the circle but
+    for the corner between both."""
     text = """G20 G90 G91.1 F7.874
 H1=0.00591 H2=0.00787
 G41 D1 G3 X-0.02706 Y-0.08808 I0.03051 J-0.05757
@@ -135,9 +162,31 @@ G42 D2 G2 X-0.01280 Y-0.07160 I-0.01550 J0.08561
 M2
 """
     ways, said = ways_of(plain, text)
-    assert not ways and ("no room for the wire between" in said or
-                         "a lead that comes within" in said)
+    assert ways, said
+    path = path_of(ways)
+    circle = Point(-0.03982 * 25.4, -0.08294 * 25.4).buffer(
+        (math.hypot(0.01276, 0.00514) + 0.00591) * 25.4, 256).exterior
+    assert all(path.distance(circle.interpolate(k / 360, normalized=True)) <
+               0.04 for k in range(360))
 
+
+def test_a_circle_stays_one_whose_ends_rounding_has_parted(plain):
+    """They differ by nanometres: the wire goes round, not from one to the
+    other."""
+    text = """G90 G90.1 F200
+H1=0.1250
+G0 X-0.0118 Y-0.7910
+G42 H1 G1 X-0.3330 Y-0.8333
+G2 X1.0500 Y0.0000 I0.1074 J0.0000
+G2 X1.0500 Y0.0000 I0.0000 J0.0000
+G2 X-0.1047 Y-0.9184 I0.1074 J0.0000
+G40 G1 X-0.4331 Y-0.6501
+M2
+"""
+    ways, said = ways_of(plain, text)
+    assert ways, said
+    assert Point(0, 0).buffer(0.925, 256).exterior.within(
+        path_of(ways).buffer(0.003))
 
 
 # -- A circle inside of an open contour ---------------------------------------

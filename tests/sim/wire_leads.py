@@ -123,3 +123,66 @@ def shifted(line, by):
     """X and I of a line, farther to the right."""
     return " ".join(f"{w[0]}{float(w[1:]) + by:.4f}" if w[0] in "XI" else w
                     for w in line.split())
+
+
+class Round:
+    """A circle in one motion or in two, cut inside or outside."""
+
+    def __init__(self, rnd):
+        r = round(rnd.uniform(1, 6), 2)
+        self.offset = rnd.choice([0.1, 0.125, 0.2])
+        self.inside, self.clockwise = rnd.random() < .5, rnd.random() < .5
+        centre = (0.0, 0.0, self.clockwise)
+        half = [(-r, 0.0, centre)] if rnd.random() < .5 else []
+        self.start, self.ring = (r, 0.0), half + [(r, 0.0, centre)]
+        self.poly = Point(0, 0).buffer(r, 512)
+        self.s = 1 if self.inside != self.clockwise else -1
+
+    def frame(self):
+        t = (0.0, -1.0 if self.clockwise else 1.0)
+        return t, (-self.s * t[1], self.s * t[0]), self.s
+
+
+class ArcsBehind:
+    """A contour with a straight lead to an arc under the offset, which touches
+    the contour; and out again.  Both may begin and end at one place."""
+
+    def __init__(self, rnd):
+        c = self.contour = Round(rnd) if rnd.random() < .3 else Contour(rnd)
+        t, n, side = frame(c) if isinstance(c, Contour) else c.frame()
+        r = c.offset * rnd.uniform(1.2, 4) + rnd.uniform(0.05, 1)
+        by = [rnd.uniform(20, 300), rnd.uniform(20, 300)]
+        if rnd.random() < .6:
+            by = rnd.choice([[180, 180], [90, 90], [by[0], 360 - by[0]]])
+        hole = rnd.choice([0, rnd.uniform(0, r), rnd.uniform(0, 2 * r)])
+        hole = [hole, hole if by[0] + by[1] == 360 else rnd.uniform(0, r)]
+        ways, far = [], []
+        for k, (a, h) in enumerate(zip(by, hole)):
+            # Seen from the contour; the lead out is the mirror image.
+            a, m = math.radians(a), 1 if k else -1
+
+            def at(x, y, m=m):
+                return tuple(round(c.start[i] + m * x * t[i] + y * n[i], 4)
+                             for i in (0, 1))
+            far.append([at(r * math.sin(a), r * (1 - math.cos(a))),
+                        at(r * math.sin(a) + h * math.cos(a) -
+                           c.offset * 1.5 * math.sin(a),
+                           r * (1 - math.cos(a)) + h * math.sin(a) +
+                           c.offset * 1.5 * math.cos(a))])
+            wire = [at((r - c.offset) * math.sin(a * j / 60),
+                       r - (r - c.offset) * math.cos(a * j / 60))
+                    for j in range(61)]
+            ways.append(LineString(wire + [far[k][1]]))
+        self.ways = ways
+        centre = (*at(0, r), side < 0)
+        out = ["G90 G90.1 F200", f"H1={c.offset:.4f}",
+               f"G0 X{far[0][1][0]:.4f} Y{far[0][1][1]:.4f}",
+               f"{'G41' if side > 0 else 'G42'} H1 {words(*far[0][0])}",
+               words(*c.start, centre), *[words(*e) for e in c.ring],
+               words(*far[1][0], centre), "G40 " + words(*far[1][1])]
+        self.text = "\n".join(out + ["M2", ""])
+
+    def is_free(self):
+        """Is there room for the leads?"""
+        return all(w.distance(self.contour.poly.exterior) >
+                   self.contour.offset - 1e-3 for w in self.ways)

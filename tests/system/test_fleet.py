@@ -66,6 +66,7 @@ class MachineState(IdlStruct, typename="edm.MachineState"):
     overruns: uint32
     wake_late_max_us: float64
     outcome: bounded_str[15]
+    stand: bounded_str[15]
 
 
 class Peer:
@@ -277,7 +278,8 @@ def test_edm_fleet_shows_who_is_gone(fleet, peer):
 def test_a_hostile_sample_is_shown_as_harmless_text(peer):
     """Nobody signs on DDS: any host may say what it likes."""
     words = dict(machine="\x1b[2Jx", host="\u202ehost\x9b", state="\x9b2J\n",
-                 fault="\x1b]0;evil\x07", outcome="\x7f\r")
+                 fault="\x1b]0;evil\x07", outcome="\x7f\r",
+                 stand="\x1b[2J")
     s = MachineState(
         utime=-1, cycle=2**64 - 1, program=0, line=2**32 - 1,
         progress=math.nan, place_mm=math.inf, length_mm=-math.inf,

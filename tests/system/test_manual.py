@@ -203,3 +203,114 @@ def test_a_sign_that_comes_late_moves_nothing(machine):
     assert c.ask("jog-on", text="Y 9", arg=10).code in (1, 69)
     s = c.status_where(lambda s: s.state == "idle")
     assert s.pos_mm[1] == 0
+
+
+# -- Begun, and how it ended --------------------------------------------------
+
+
+def begun(m, *words):
+    """Start it with --wait, and return the process once it has said begun."""
+    p = subprocess.Popen(
+        [rig.BUILD / "edmctl", "--machine", m.name, "--timeout", "30", *words,
+         "--wait"], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert p.stdout.readline().strip() == f"{words[0]}: begun"
+    return p
+
+
+def ended(p):
+    out, err = p.communicate(timeout=60)
+    return p.returncode, out.strip(), err
+
+
+def test_who_moves_an_axis_hears_that_it_has_begun(machine):
+    r = machine.ctl("jog", "Y", "-1.5")
+    assert r.stdout == "jog: begun\n"
+    idle_at(machine, 1, -1.5)
+
+
+def test_who_waits_hears_that_it_is_done(machine):
+    r = machine.ctl("jog", "Y", "-1.5", "--wait")
+    assert (r.returncode, r.stdout) == (0, "jog: begun\njog: done\n")
+    assert abs(machine.client.status().pos_mm[1] + 1.5) < 2e-3
+    r = machine.ctl("--json", "jog", "Y", "1.5", "--wait")
+    assert json.loads(r.stdout) == {"verb": "jog", "moved": "there"}
+
+
+@pytest.mark.parametrize("end", ("hold", "stop"))
+def test_who_waits_hears_that_it_was_ended_on_its_way(machine, end):
+    p = begun(machine, "jog", "Y", "-150")
+    machine.client.status_where(lambda s: s.pos_mm[1] < -0.5)
+    assert machine.ctl(end).returncode == 0
+    code, out, err = ended(p)
+    assert (code, out) == (1, "")
+    assert "on its way" in err
+
+
+def test_who_waits_hears_of_the_fault(machine):
+    p = begun(machine, "jog", "Y", "-150")
+    machine.client.status_where(lambda s: s.pos_mm[1] < -0.5)
+    assert machine.ctl("estop").returncode == 0
+    code, out, err = ended(p)
+    assert (code, out) == (1, "")
+    assert "fault e-stop" in err
+
+
+def test_who_waits_for_another_motion_is_not_told_of_this_one(machine):
+    p = begun(machine, "jog", "Y", "-150")
+    machine.client.status_where(lambda s: s.pos_mm[1] < -0.5)
+    p.send_signal(signal.SIGSTOP)
+    assert machine.ctl("hold").returncode == 0
+    machine.client.status_where(lambda s: s.state == "idle")
+    assert machine.ctl("jog", "X", "0.1", "--wait").returncode == 0
+    p.send_signal(signal.SIGCONT)
+    code, out, err = ended(p)
+    assert (code, out) == (69, "")
+    assert "not known" in err
+
+
+def test_who_stops_waiting_stops_nothing(machine):
+    p = begun(machine, "jog", "Y", "-150")
+    p.send_signal(signal.SIGINT)
+    code, _, err = ended(p)
+    assert code == 75, err
+    assert "goes on" in err
+    assert machine.client.status().state == "jog"
+
+
+def test_ways_along_the_path_and_jobs_are_waited_for(machine):
+    text = b"G21 G90 F600\nG1 X1\nG1 X2\nG1 X3\nM0\nG1 X4\nM30\n"
+    c = machine.client
+    assert c.submit(text, "job").code == 0
+    c.status_where(lambda s: s.state == "hold" and abs(s.pos_mm[0] - 3) < 1e-3)
+    for words, at in ((("step", "-2"), 1), (("step", "+1"), 2),
+                      (("retract", "0.5"), 1.5), (("retract", "50"), 0)):
+        r = machine.ctl(*words, "--wait")
+        assert (r.returncode, r.stdout) == \
+            (0, f"{words[0]}: begun\n{words[0]}: done\n"), r.stderr
+        assert abs(c.status().pos_mm[0] - at) < 2e-3
+    r = machine.ctl("start", "--wait", timeout=60)
+    assert r.returncode == 0, r.stderr
+    assert r.stdout.startswith("start: begun\n")
+    assert "job job.ngc: done" in r.stdout
+
+
+def test_homing_is_waited_for(homing):
+    homing.start()
+    r = homing.ctl("home", "--wait", timeout=60)
+    assert (r.returncode, r.stdout) == (0, "home: begun\nhome: done\n")
+    assert homing.ctl("home", "X").stdout == "home: begun\n"
+
+
+# -- What a period took -------------------------------------------------------
+
+
+def test_latency_has_what_a_period_took_beside_how_late_it_woke(machine):
+    machine.client.status()
+    got = json.loads(machine.ctl("--json", "latency", "0.5").stdout)
+    took = got["took"]
+    assert got["wakes"] > 0 and abs(took["periods"] - got["wakes"]) <= 2
+    assert sum(took["bins_us"]) == took["periods"]
+    assert len(took["bins_us"]) == 256 and took["bin_us"] == 1000 / 128
+    assert 0 <= took["min_us"] <= took["mean_us"] <= took["max_us"]
+    text = machine.ctl("latency").stdout
+    assert "how late it woke" in text and "what a period took" in text

@@ -77,9 +77,7 @@ def select(tmp_path, machine):
     tool = tmp_path / "select_job"
     subprocess.run(
         ["cc", "-D_GNU_SOURCE", "-o", tool, HERE / "select_job.c",
-         *(ROOT / "daemon/shm").glob("*.c"), ROOT / "common/names.c",
-         ROOT / "common/places.c",
-         ROOT / "common/thread.c",
+         *(ROOT / "daemon/shm").glob("*.c"), rig.BUILD / "common.a",
          *(f"-I{ROOT / d}" for d in ("daemon/shm", "daemon/words", "common",
                                      "libinterp/core/include"))], check=True)
     return lambda n: subprocess.run(

@@ -101,6 +101,23 @@ M2
     assert off.max() == pytest.approx(100 * np.tan(np.radians(2)), abs=0.01)
 
 
+def test_a_check_reads_a_pipe_as_it_reads_a_file(tmp_path):
+    ini = tmp_path / "m.ini"
+    ini.write_text("[machine]\nname = m\n")
+    check = [rig.BUILD / "edm-panel", "--work", "check", "--config", ini,
+             "--file-name", "a.ngc"]
+    job = tmp_path / "a.ngc"
+    job.write_text("G90 F5 G1 X0\n" + "".join(
+        f"G1 X{i % 7}. Y{i % 5}.\n" for i in range(9000)) + "M2\n")
+    piped = subprocess.run(check, input=job.read_bytes(),
+                           capture_output=True, timeout=60)
+    with job.open() as text:
+        read = subprocess.run(check, stdin=text, capture_output=True,
+                              timeout=60)
+    assert json.loads(read.stdout[:read.stdout.index(b"\n") + 1])["ok"]
+    assert (piped.stdout, piped.returncode) == (read.stdout, read.returncode)
+
+
 def test_a_job_runs_from_upload_to_end(p, me):
     with me.live() as live:
         live.where(lambda s: s.get("jobs"))

@@ -162,6 +162,7 @@ subprocess.run([panel, "--config", config, "--add-user", "dora", "operator"],
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="needs root")
+@pytest.mark.needs("mounts of its own")
 def test_what_root_writes_the_service_can_read(tmp_path):
     p = panel.Panel(tmp_path, more=f"users = {tmp_path}/users\n")
     passwd = pathlib.Path("/etc/passwd").read_text().replace("\n\n", "\n")

@@ -595,7 +595,9 @@ def test_the_panel_dies_and_comes_back(p, page):
 def test_a_power_cut_is_told(p, page):
     """All of the machine is gone at once, and nothing of it is in memory."""
     client = p.machine.client
-    p.session().post("/api/jobs?name=night.ngc", panel.JOB)
+    # So long that it is not over, however late this process sees it begin.
+    p.session().post("/api/jobs?name=night.ngc",
+                     panel.JOB.replace(b"G1 Z-2 ", b"G1 Z-9 "))
     client.status_where(lambda s: s.state == "erode", 60)
     p.machine.kill("jobs")
     p.machine.kill("edmd")
@@ -632,3 +634,80 @@ def test_the_daemon_dies_and_comes_back(p, page):
         "edmd-jobs does not answer")
     p.machine.start_jobs()
     expect(page.locator(".head .state p")).to_contain_text("No job is loaded")
+
+
+CHANGE = b"G21 G90 F600\nG0 Z1\nT3\nG0 Z2\nM0 (look at it)\nG0 Z3\nM30\n"
+SIZES = ((1280, 800), (800, 480), (390, 844))
+
+
+def shot(page, name):
+    if folder := os.environ.get("EDM_SHOTS"):
+        page.screenshot(path=f"{folder}/{name}.png")
+
+
+def test_the_page_says_what_it_stands_for_and_takes_the_answer(p, page):
+    client = p.machine.client
+    for n in (1, 3):
+        client.ask("electrode-add", arg=n, text=f"name=e{n}")
+    client.ask("electrode-use", arg=1)
+    end_job(page, p)
+    assert client.submit(CHANGE, "change", hold=True).code == 0
+    client.job_where("change", "ready", 20)
+    press(page.locator("#start"))
+    why = page.locator(".head .state p")
+    expect(why).to_have_text("Put electrode 3 in; 1 is in. Then confirm it.")
+    expect(page.locator("#start")).to_have_attribute("aria-disabled", "true")
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        for key in ("#done", "#start"):
+            expect(page.locator(key)).to_be_in_viewport(ratio=1)
+        expect(why).to_be_in_viewport(ratio=1)
+        assert why.evaluate("e => e.scrollWidth <= e.clientWidth + 1")
+        shot(page, f"electrode-{width}")
+    press(page.locator("#done"))
+    expect(why).to_have_text("Electrode 3 is in. Go on.")
+    expect(page.locator("#done")).to_have_count(0)
+    press(page.locator("#start"))
+    expect(why).to_have_text("The program stops in line 5. Go on when you are "
+                             "ready.")
+    shot(page, "stop-390")
+    press(page.locator("#start"))
+    client.job_where("change", "done", 30)
+    client.ask("electrode-use", arg=0)
+
+
+# Is a line of text shown whole, with nothing of it cut off?
+WHOLE = """e => e.scrollWidth <= e.clientWidth + 1 &&
+    e.scrollHeight <= e.clientHeight + 1"""
+
+
+def says_on_every_page(page, words):
+    """In the head, which is above everything else of the page."""
+    for name in PAGES:
+        show(page, name)
+        why = page.locator("header.head .state p")
+        expect(why).to_contain_text(words)
+        assert why.evaluate(WHOLE), (name, why.inner_text())
+        main = page.locator("main.page").bounding_box()
+        assert why.bounding_box()["y"] < main["y"]
+
+
+def test_every_page_says_at_its_top_that_no_command_gets_through(p, page):
+    """And names what is left: the machine's own emergency stop."""
+    own = "own emergency stop"
+    try:
+        p.machine.jobs.send_signal(signal.SIGSTOP)
+        says_on_every_page(page, "edmd-jobs does not answer. Hold, Stop and "
+                           "E-stop go to edmd itself")
+        says_on_every_page(page, own)
+        p.machine.edmd.send_signal(signal.SIGSTOP)
+        says_on_every_page(page, "No command reaches the machine. Use its "
+                           + own)
+    finally:
+        p.machine.edmd.send_signal(signal.SIGCONT)
+        p.machine.jobs.send_signal(signal.SIGCONT)
+    expect(page.locator(".head .state p")).not_to_contain_text(own)
+    p.kill()
+    says_on_every_page(page, own)
+    p.start_panel()
+    expect(page.locator(".head .state p")).not_to_contain_text(own)

@@ -21,10 +21,10 @@ PROGRAMS = ["edmctl", "edmsim", "edmd", "edmd-jobs", "edm-plan", "edm-panel",
 MACHINE = "examples/machine.ini"
 
 
-def said(*args, data=b""):
+def said(*args, data=b"", cwd=None):
     try:
         done = subprocess.run(args, input=data, capture_output=True,
-                              timeout=60)
+                              timeout=60, cwd=cwd)
     except subprocess.TimeoutExpired as e:
         return (e.stdout or b"") + (e.stderr or b"")
     return done.stdout + done.stderr
@@ -61,9 +61,9 @@ def test_a_name_in_any_option_moves_no_terminal(program, tmp_path):
     ["submit"], ["show"], ["why"], ["remove"], ["record"], ["support"],
     ["keys", "add"], ["electrode", "show"], ["offset"], ["identify"],
     ["new-machine"], ["set"], ["jog"], ["log"]], ids=lambda w: w[0])
-def test_a_name_in_any_verb_moves_no_terminal(words):
-    check(rig.BUILD / "edmctl", *words, EVIL)
-    check(rig.BUILD / "edmctl", "--machine", EVIL, *words, EVIL)
+def test_a_name_in_any_verb_moves_no_terminal(words, tmp_path):
+    check(rig.BUILD / "edmctl", *words, EVIL, cwd=tmp_path)
+    check(rig.BUILD / "edmctl", "--machine", EVIL, *words, EVIL, cwd=tmp_path)
 
 
 INSIDE = {

@@ -156,7 +156,7 @@ def woken(machine, meanwhile):
 
 def wakes(machine):
     """The cycle's histogram: {us: times}."""
-    out = machine.ctl("latency").stdout
+    out = machine.ctl("latency").stdout.split("what a period took")[0]
     return collections.Counter({
         int(us): int(n)
         for us, n in re.findall(r"^ *(\d+) us\+? +(\d+)$", out, re.M)})

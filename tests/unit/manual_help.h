@@ -16,6 +16,7 @@ struct bench {
 	struct io_inputs in;
 	struct io_outputs out;
 	int32_t home[INTERP_NAXES];	/* on at and below */
+	int32_t own_more;		/* the drives' own zero lies there */
 	int32_t index;			/* pulses from mark to mark */
 	int32_t limit_min, limit_max;
 	int32_t before[INTERP_NAXES];
@@ -35,6 +36,7 @@ static inline struct cycle_config manual_config(void)
 			.jog_mm_s = 20, .home_toward = -1,
 			.home_fast_mm_s = 20, .home_slow_mm_s = 1,
 			.home_at_mm = -10, .home_back_mm = 0.5,
+			.home_search_mm = 5,
 		};
 	return k;
 }
@@ -67,6 +69,7 @@ static inline void sense(struct bench *b)
 		b->in.limit |= at < b->limit_min || at > b->limit_max ?
 			       1u << i : 0;
 		b->in.actual[i] = b->in.stands_at[i] = at;
+		b->in.own[i] = at + b->own_more;
 	}
 }
 

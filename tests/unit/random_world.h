@@ -383,6 +383,8 @@ static inline void random_world(struct rig *r, uint64_t *s)
 	/* An operator who goes on. */
 	if (r->c.state == STATE_FAULT && rnd(s) % 20 == 0)
 		tell(r, CYCLE_RESET);
+	if (stand_asks(&r->c) && rnd(s) % 20 == 0)
+		tell_mm(r, CYCLE_CONFIRM, r->c.stand.of);
 	if (r->c.state == STATE_HOLD && rnd(s) % 20 == 0)
 		tell(r, CYCLE_START);
 }

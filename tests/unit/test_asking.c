@@ -310,6 +310,8 @@ static void what_a_person_sets_is_asked_for_at_each_change(void **state)
 			period(&r, &g, SPARKING_V);
 			assert_false(r.out.power);
 		}
+		assert_int_equal(tell(&r, CYCLE_START), ANSWER_ASKS);
+		assert_int_equal(tell(&r, CYCLE_CONFIRM), ANSWER_DONE);
 		assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
 	}
 	assert_int_equal(stands, 3);

@@ -323,6 +323,22 @@ static void drives_stand_where_the_targets_begin(void **st)
 	unmake(&r);
 }
 
+/* Wherever the machine begins: an absolute drive is homed by this. */
+static void a_drive_tells_its_own_place_too(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	r.out.target[INTERP_X] = 5000;
+	r.p[0].actual = -12340;
+	run(&r, 150);
+	assert_int_equal(r.in.actual[INTERP_X], 5000);
+	assert_int_equal(r.in.own[INTERP_X], -1234);
+	assert_int_equal(r.in.own[INTERP_Y], 777);
+	unmake(&r);
+}
+
 /* The master is killed at X 5000; the drives come to a stand @off further. */
 static void begin_after_a_crash(struct rig *r, int32_t off, bool remember)
 {
@@ -1054,6 +1070,7 @@ int main(void)
 		cmocka_unit_test(it_brings_up_all_drives_and_enables_by_command_only),
 		cmocka_unit_test(targets_reach_the_drives_as_increments_from_where_they_stood),
 		cmocka_unit_test(drives_stand_where_the_targets_begin),
+		cmocka_unit_test(a_drive_tells_its_own_place_too),
 		cmocka_unit_test(after_a_crash_an_axis_stands_where_it_stands),
 		cmocka_unit_test(after_a_crash_a_drive_that_was_off_has_no_place),
 		cmocka_unit_test(a_restart_tells_that_the_place_is_lost_and_moves_nothing),

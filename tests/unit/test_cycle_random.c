@@ -252,6 +252,7 @@ static void check_power(const struct rig *r)
 	assert_false(c->hold.moving);
 	assert_false(r->in.estop || r->in.lost || c->config.dry_run);
 	assert_false(c->job.power_off);
+	assert_false(stand_asks(c));
 	assert_true(is_at_cut(&c->cursor));
 	assert_int_equal(c->fault.first, FAULT_NONE);
 	powered++;

@@ -313,7 +313,7 @@ static const struct bad {
 	{ "sodick", "G01 X5;\nM02;", 1, 5, "X5 without a decimal point" },
 	{ "sodick", "G28 X0;\nM02;", 1, 1, "G28: it goes to the start" },
 	{ "sodick", "M05;\nM02;", 1, 1, "M05: discharge, or a contact" },
-	{ "sodick", "G02 X2.0 R1.0;\nM02;", 1, 10, "unknown word R1.0" },
+	{ "sodick", "G02 X2.0 R1.0;\nM02;", 1, 10, "R1.0: a radius" },
 	{ "chmer", "SC0100 004\nM02", 1, 1, "SC without a =" },
 	{ "chmer", "G1 G41 X1.0\nM02", 1, 4, "an offset by register 0" },
 	{ "chmer", "Z1.0\nM02", 1, 1, "unknown word Z1.0" },

@@ -63,12 +63,33 @@ static void an_absolute_drive_says_where_it_is(void **state)
 
 	(void)state;
 	bench_init(&b, &k);
+	b.own_more = 25000;
 	jog(&b, INTERP_X, 3);
 	run_out(&b, STATE_IDLE);
 	assert_int_equal(ask(&b, CYCLE_HOME, MANUAL_ALL_AXES, 0), ANSWER_DONE);
 	run_out(&b, STATE_IDLE);
-	assert_int_equal(b.c.out.target[INTERP_X], 3000 - 10000);
+	assert_int_equal(b.c.out.target[INTERP_X], 28000 - 10000);
 	assert_int_equal(b.out.target[INTERP_X], 3000);
+	assert_int_equal(manual_unhomed(&b.c), 0);
+}
+
+/* Its battery was empty: it says something that can be nowhere here. */
+static void a_place_out_of_the_travel_is_no_home(void **state)
+{
+	const struct cycle_config k = home_config(HOME_ABSOLUTE);
+	struct bench b;
+
+	(void)state;
+	bench_init(&b, &k);
+	b.own_more = k.travel_max[INTERP_X] + 10000 + 5000 + 1;
+	ask(&b, CYCLE_HOME, INTERP_X, 0);
+	run_out(&b, STATE_FAULT);
+	assert_int_equal(b.c.fault.first, FAULT_HOME);
+	assert_int_equal(manual_unhomed(&b.c), X_BIT);
+	b.own_more--;
+	ask(&b, CYCLE_RESET, 0, 0);
+	ask(&b, CYCLE_HOME, INTERP_X, 0);
+	run_out(&b, STATE_IDLE);
 	assert_int_equal(manual_unhomed(&b.c), 0);
 }
 
@@ -156,20 +177,113 @@ static void axes_are_homed_in_their_order(void **state)
 	check_homed(&b, INTERP_X, -2000);
 }
 
-static void no_switch_is_a_fault(void **state)
+/* Travel of 3 mm to both sides, and no switch. */
+static struct cycle_config switchless(struct bench *b, double at_mm, int toward)
 {
 	struct cycle_config k = home_config(HOME_SWITCH);
+
+	k.travel_min[INTERP_X] = -3000;
+	k.travel_max[INTERP_X] = 3000;
+	k.axis[INTERP_X].home_at_mm = at_mm;
+	k.axis[INTERP_X].home_toward = toward;
+	bench_init(b, &k);
+	b->home[INTERP_X] = INT32_MIN;
+	return k;
+}
+
+static void home_in_vain(struct bench *b)
+{
+	assert_int_equal(ask(b, CYCLE_HOME, INTERP_X, 0), ANSWER_DONE);
+	run_out(b, STATE_FAULT);
+	assert_string_equal(fault_name(b->c.fault.first), "home-not-found");
+	assert_int_equal(manual_unhomed(&b->c), X_BIT);
+	assert_int_equal(ask(b, CYCLE_RESET, 0, 0), ANSWER_DONE);
+}
+
+/* The way of the period in which it is seen, and of the one before. */
+#define OVER	42
+
+/* From the far end of the travel to the switch, and home_search_mm. */
+static void a_search_ends_where_the_switch_is_at_last(void **state)
+{
+	static const struct { double at_mm; int32_t most; } rows[] = {
+		{ -3, 6000 }, { 0, 3000 }, { 2, 1000 }, { -3.5, 6500 },
+		{ 5, 0 },
+	};
+
+	(void)state;
+	for (int i = 0; i < 10; i++) {
+		const int toward = i % 2 ? 1 : -1;
+		struct bench b;
+
+		switchless(&b, -toward * rows[i / 2].at_mm, toward);
+		home_in_vain(&b);
+		assert_in_range(toward * b.out.target[INTERP_X],
+				rows[i / 2].most + 5000,
+				rows[i / 2].most + 5000 + OVER);
+	}
+}
+
+/* However often it is asked, and from wherever: not a pulse farther. */
+static void a_search_in_vain_is_not_begun_anew(void **state)
+{
 	struct bench b;
 
 	(void)state;
-	k.travel_min[INTERP_X] = -3000;
-	k.travel_max[INTERP_X] = 3000;
-	bench_init(&b, &k);
+	switchless(&b, -3, -1);
+	home_in_vain(&b);
+	for (int i = 0; i < 20; i++) {
+		if (i % 2)
+			jog(&b, INTERP_X, 2);
+		run_out(&b, STATE_IDLE);
+		home_in_vain(&b);
+		assert_in_range(-b.out.target[INTERP_X], 11000, 11000 + OVER);
+	}
+	/* The switch is mended, and the axis is jogged onto it. */
+	b.home[INTERP_X] = -12000;
+	jog(&b, INTERP_X, -3);
+	run_out(&b, STATE_IDLE);
+	assert_int_equal(ask(&b, CYCLE_HOME, INTERP_X, 0), ANSWER_DONE);
+	run_out(&b, STATE_IDLE);
+	assert_int_equal(manual_unhomed(&b.c), 0);
+}
+
+static void a_known_place_is_not_left_by_more_than_the_search(void **state)
+{
+	struct bench b;
+
+	(void)state;
+	switchless(&b, -3, -1);
+	b.home[INTERP_X] = -2500;
 	ask(&b, CYCLE_HOME, INTERP_X, 0);
-	run_out(&b, STATE_FAULT);
-	assert_string_equal(fault_name(b.c.fault.first), "home-not-found");
-	assert_in_range(-b.out.target[INTERP_X], 6000, 6020);
-	assert_int_equal(manual_unhomed(&b.c), X_BIT);
+	run_out(&b, STATE_IDLE);
+	jog(&b, INTERP_X, 4);
+	run_out(&b, STATE_IDLE);
+	b.home[INTERP_X] = INT32_MIN;
+	home_in_vain(&b);
+	assert_in_range(-b.out.target[INTERP_X], 2500 + 5000,
+			2500 + 5000 + OVER);
+}
+
+/* Stuck, or one that comes and goes: the way off it has an end too. */
+static void a_switch_that_stays_on_is_left_only_so_far(void **state)
+{
+	(void)state;
+	for (int every = 0; every < 3; every++) {
+		struct bench b;
+
+		switchless(&b, 0, -1);
+		b.home[INTERP_X] = INT32_MAX;
+		assert_int_equal(ask(&b, CYCLE_HOME, INTERP_X, 0),
+				 ANSWER_DONE);
+		for (int i = 0; i < 200000 && b.c.state == STATE_HOME; i++) {
+			b.home[INTERP_X] = every && i % (50 * every) > 40 ?
+					   INT32_MIN : INT32_MAX;
+			period(&b);
+		}
+		assert_int_equal(b.c.fault.first, FAULT_HOME);
+		assert_in_range(b.out.target[INTERP_X], 8000, 8000 + OVER);
+	}
 }
 
 static void a_stop_leaves_it_unhomed(void **state)
@@ -244,7 +358,12 @@ int main(void)
 		cmocka_unit_test(a_limit_switch_is_where_the_drive_counts_now),
 		cmocka_unit_test(backlash_does_not_move_home),
 		cmocka_unit_test(axes_are_homed_in_their_order),
-		cmocka_unit_test(no_switch_is_a_fault),
+		cmocka_unit_test(a_place_out_of_the_travel_is_no_home),
+		cmocka_unit_test(a_search_ends_where_the_switch_is_at_last),
+		cmocka_unit_test(a_search_in_vain_is_not_begun_anew),
+		cmocka_unit_test(
+			a_known_place_is_not_left_by_more_than_the_search),
+		cmocka_unit_test(a_switch_that_stays_on_is_left_only_so_far),
 		cmocka_unit_test(a_stop_leaves_it_unhomed),
 		cmocka_unit_test(only_axes_with_a_method_are_homed),
 		cmocka_unit_test(unhomed_nothing_is_cut_if_so_configured),

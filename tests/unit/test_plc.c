@@ -605,7 +605,7 @@ static void what_cannot_be_is_aborted_with_its_code(void **state)
 		bool operational;
 	} asks[] = {
 		{ 0x40, OBJECT(0x3000, 0), 0, 0x06020000, true },
-		{ 0x40, OBJECT(0x2000, 9), 0, 0x06090011, true },
+		{ 0x40, OBJECT(0x2000, 11), 0, 0x06090011, true },
 		{ 0x40, OBJECT(0x1018, 4), 0, 0x06090011, true },
 		{ 0x2f, OBJECT(0x3000, 0), 1, 0x06020000, false },
 		{ 0x2f, OBJECT(0x2100, 7), 1, 0x06090011, false },

@@ -368,7 +368,7 @@ static void homed_axes(struct world *w, bool stays)
 		.method = HOME_ABSOLUTE, .home_at_mm = 10,
 	};
 	loop_make(w);
-	w->in.actual[INTERP_X] = 1234;
+	w->in.own[INTERP_X] = w->in.actual[INTERP_X] = 1234;
 	assert_int_equal(ask(w, CYCLE_HOME, INTERP_X, 0), ANSWER_DONE);
 	periods(w, OPEN_V, 10);
 	assert_int_equal(manual_unhomed(&w->l.cycle), 0);

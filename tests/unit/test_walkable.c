@@ -110,6 +110,7 @@ static void to_the_end(const struct job *j, struct rig *r)
 		if (r->c.state == STATE_HOLD && stands(r)) {
 			if (r->c.config.hold_at_end && place(r) >= end - 1e-9)
 				return;
+			tell_mm(r, CYCLE_CONFIRM, r->c.stand.of);
 			tell(r, CYCLE_START);
 		}
 		watch(j, r, &still);

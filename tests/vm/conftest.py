@@ -55,6 +55,14 @@ def edges():
     return checked(Run("edges", EDGES, "-d", "-i", "0"))
 
 
+def made(command):
+    """What it said is told if it fails."""
+    p = subprocess.run(command, text=True, stdout=subprocess.PIPE,
+                       stderr=subprocess.STDOUT)
+    assert p.returncode == 0, f"{command} ended with {p.returncode}:\n" + \
+        p.stdout[-8000:]
+
+
 def compiled(name):
     """A program of this folder, for the guest."""
     to = BUILD_VM / name
@@ -147,9 +155,8 @@ def systemd():
     """systemd as PID 1, with what `make install` installs."""
     root = BUILD_VM / "root"
     shutil.rmtree(root, ignore_errors=True)
-    subprocess.run(["make", "-s", "-C", ROOT, "install", f"B={BUILD}",
-                    f"DESTDIR={root}", "PREFIX=/usr/local"],
-                   check=True, capture_output=True)
+    made(["make", "-s", "-C", ROOT, "install", f"B={BUILD}",
+          f"DESTDIR={root}", "PREFIX=/usr/local"])
     return checked(Run("systemd", {"service.ini": machine(cpu=1, tail=GAP),
                                    "slow.ngc": SLOW_JOB,
                                    "can.ini": drives("XY").replace(
@@ -164,13 +171,12 @@ def packages():
     """What `make deb` makes, and the same once more as a later version; without
     python3-edm, whose python3-nacl the host need not have."""
     make = ["make", "-s", "-C", ROOT, "deb"]
-    subprocess.run(make, check=True, capture_output=True)
+    made(make)
     old, new = BUILD_VM / "old", BUILD_VM / "new"
     shutil.rmtree(old, ignore_errors=True)
     shutil.copytree(ROOT / "build/deb", old)
-    subprocess.run([ROOT / "packaging/deb", ROOT / "build-deb",
-                    ROOT / "build-deb/deb/root", new, "0.1.1"],
-                   check=True, capture_output=True)
+    made([ROOT / "packaging/deb", ROOT / "build-deb",
+          ROOT / "build-deb/deb/root", new, "0.1.1"])
     for deb in (*old.glob("python3*"), *new.glob("python3*")):
         deb.unlink()
     return checked(Run("packages", {

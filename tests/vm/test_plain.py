@@ -1,6 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """On a PREEMPT_RT kernel with two CPUs: what depends on no timing."""
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
 import pytest
+from boot import BUILD_VM, HERE
 
 
 def test_the_kernel_is_preempt_rt(plain):
@@ -57,3 +64,32 @@ def test_a_lost_chip_ends_sparks_pulses_and_the_watchdog(plain):
     assert "io-lost: spark 0\n" in text, text
     assert "watchdog moved 0\n" in text, text
     assert "io-lost" in plain.text("lost.log")
+
+
+def test_a_machine_ends_with_who_started_it(tmp_path):
+    """A test that is killed leaves no machine behind."""
+    script = tmp_path / "script"
+    script.write_text("sleep 3600\n")
+    job = tmp_path / "job"
+    job.mkdir()
+    starts = ("import subprocess, sys\n"
+              "subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL)\n")
+    p = subprocess.Popen(
+        [sys.executable, "-c", starts, HERE / "vm-run", "-t", "3600", job,
+         script], env=os.environ | {"VM_BUILD": str(BUILD_VM)})
+    pid = job / ".vm/pid"
+    try:
+        until(lambda: pid.exists() and pid.read_text().strip())
+        machine = pathlib.Path("/proc", pid.read_text().strip())
+        assert machine.exists()
+    finally:
+        p.kill()
+        p.wait()
+    until(lambda: not machine.exists())
+
+
+def until(true, seconds=120):
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end
+        time.sleep(0.1)

@@ -278,6 +278,10 @@ class Client:
         """Held: to the Nth node of the path, ahead or back."""
         self.ask("step", arg=nodes)
 
+    def done(self, number: int = 0) -> None:
+        """What the job asks for is done; number: the electrode that is in."""
+        self.ask("done", arg=number)
+
     def jog(self, axis: str, mm: float) -> None:
         """Idle: move one axis so far."""
         self.ask("jog", text=axis, arg=mm)

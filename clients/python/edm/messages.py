@@ -18,7 +18,7 @@ SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
-STATUS = bytes.fromhex("cae2d38456811636")
+STATUS = bytes.fromhex("d99ba36c295f786d")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -233,6 +233,9 @@ class Status:
     electrode: int = 0
     electrode_shift_mm: float = 0.0
     electrode_wear_mm: float = 0.0
+    stand: str = ""
+    asks: str = ""
+    stand_s: float = 0.0
 
     def encode(self) -> Bytes:
         return (STATUS
@@ -272,7 +275,10 @@ class Status:
                 + put.int32_t(self.hunts)
                 + put.int32_t(self.electrode)
                 + put.double(self.electrode_shift_mm)
-                + put.double(self.electrode_wear_mm))
+                + put.double(self.electrode_wear_mm)
+                + put.string(self.stand)
+                + put.string(self.asks)
+                + put.double(self.stand_s))
 
     @staticmethod
     def decode(data: Bytes) -> Status:
@@ -314,6 +320,9 @@ class Status:
             r.int32_t(),
             r.int32_t(),
             r.double(),
+            r.double(),
+            r.string(),
+            r.string(),
             r.double(),
         )
         r.end()

@@ -30,6 +30,7 @@ void axes_guard(struct cycle *c, const struct io_inputs *in)
 	c->axes.powerless = in->powerless;
 	c->manual.unplaced |= in->unplaced;
 	c->manual.homed &= ~in->unplaced;
+	c->manual.aimed &= ~in->unplaced;
 	/* A reset goes out at the end of this cycle, so what the drives report
 	 * now is old. */
 	if (in->trouble != IO_WELL && !c->out.reset)

@@ -3,7 +3,8 @@
  * home.c - homing: a table with one function for each phase
  *
  * Each function does one period and says which phase the next period is in.
- * Each phase has a greatest distance; after that the fault is home-not-found.
+ * Where a search ends is fixed when it begins; beyond that the fault is
+ * home-not-found.
  *
  * A phase that ends still moves in its last period: a period without motion
  * would be a jolt.
@@ -32,14 +33,70 @@ static void run(struct cycle *c, int toward, double v_mm_s)
 	manual_move(c, mover_run(&c->manual.mover, &l, toward * l.v_max_mm_s));
 }
 
-/* No switch can be farther away than the whole travel. */
+/* Pulses, as the mm of an axis. */
+static int64_t in_pulses(const struct manual_axis *a, double mm)
+{
+	return llround(mm / a->pulse_mm);
+}
+
+/* The way from the far end of the travel to the switch or mark. */
+static int64_t reach(const struct cycle *c, uint32_t axis)
+{
+	const struct manual_axis *a = &c->config.axis[axis];
+	const int64_t at = in_pulses(a, a->home_at_mm);
+	const int64_t way = a->home_toward < 0 ?
+			    c->config.travel_max[axis] - at :
+			    at - c->config.travel_min[axis];
+
+	return way > 0 ? way : 0;
+}
+
+/*
+ * Where the switch or mark is at last, and home_search_mm beyond.  An axis
+ * whose place is known knows how far that is; another one may stand at the far
+ * end of its travel.  Nothing is searched beyond that when homing begins again:
+ * the place is still unknown, but the drive has counted how far it went.
+ */
+void home_aim(struct cycle *c, uint32_t axis)
+{
+	struct manual *h = &c->manual;
+	const struct manual_axis *a = &c->config.axis[axis];
+	const int64_t at = in_pulses(a, a->home_at_mm);
+	const bool known = h->homed >> axis & 1;
+
+	if (h->aimed >> axis & 1 && !known)
+		return;
+	h->aimed |= 1u << axis;
+	h->end[axis] = comp_pulses(&c->comp.axis[axis]) +
+		       (known ? at - c->out.target[axis] :
+				a->home_toward * reach(c, axis)) +
+		       a->home_toward * in_pulses(a, a->home_search_mm);
+}
+
+/* It stands on its switch: it comes back to here at most, and has no more than
+ * the whole travel behind it. */
+static void aim_off(struct cycle *c)
+{
+	struct manual *h = &c->manual;
+	const struct manual_axis *a = manual_axis(c);
+	const int64_t more = a->home_toward * in_pulses(a, a->home_search_mm);
+	int64_t *end = &h->end[h->axis];
+
+	h->end_off = pulses(c) - a->home_toward * reach(c, h->axis) - more;
+	if (a->home_toward * (pulses(c) - *end) > 0)
+		*end = pulses(c) + more;
+}
+
 static void watch_way(struct cycle *c)
 {
 	const struct manual *h = &c->manual;
-	const double travel = (double)c->config.travel_max[h->axis] -
-			      c->config.travel_min[h->axis];
+	const int toward = manual_axis(c)->home_toward;
+	const bool off = h->phase == HOME_LEAVE || h->phase == HOME_CLEAR;
+	const bool onto = h->phase == HOME_SEEK || h->phase == HOME_ONTO ||
+			  h->phase == HOME_INDEX;
 
-	if (fabs(h->gone_mm - h->phase_mm) / manual_axis(c)->pulse_mm > travel)
+	if ((onto && toward * (pulses(c) - h->end[h->axis]) > 0) ||
+	    (off && toward * (pulses(c) - h->end_off) < 0))
 		fault_latch(&c->fault, FAULT_HOME);
 }
 
@@ -74,6 +131,22 @@ static void call(struct cycle *c, int32_t beyond, int32_t drive)
 	h->homed |= 1u << h->axis;
 	h->unplaced &= ~(1u << h->axis);
 	h->todo &= ~(1u << h->axis);
+	h->aimed &= ~(1u << h->axis);
+}
+
+/* A drive that has lost its own zero says something, too. */
+static void call_own(struct cycle *c, const struct io_inputs *in)
+{
+	const uint32_t i = c->manual.axis;
+	const struct manual_axis *a = manual_axis(c);
+	const int64_t at = in_pulses(a, a->home_at_mm) + in->own[i];
+	const int64_t over = in_pulses(a, a->home_search_mm);
+
+	if (at < c->config.travel_min[i] - over ||
+	    at > c->config.travel_max[i] + over)
+		fault_latch(&c->fault, FAULT_HOME);
+	else
+		call(c, in->own[i], in->actual[i]);
 }
 
 static enum home_phase begin(struct cycle *c, const struct io_inputs *in)
@@ -87,7 +160,7 @@ static enum home_phase begin(struct cycle *c, const struct io_inputs *in)
 		return HOME_BEGIN;
 	}
 	if (manual_axis(c)->method == HOME_ABSOLUTE) {
-		call(c, in->actual[h->axis], in->actual[h->axis]);
+		call_own(c, in);
 		return HOME_BEGIN;
 	}
 	return is_on(c, in->home) ? HOME_LEAVE : HOME_SEEK;
@@ -194,7 +267,8 @@ bool home_go(struct cycle *c, const struct io_inputs *in)
 	h->phase = phases[was](c, in);
 	if (h->phase != was)
 		h->phase_mm = h->gone_mm;
-	else
-		watch_way(c);
+	if (h->phase == HOME_LEAVE && (was == HOME_BEGIN || was == HOME_BRAKE))
+		aim_off(c);
+	watch_way(c);
 	return false;
 }

@@ -275,6 +275,8 @@ int manual_home(struct cycle *c, uint32_t axis)
 		return ANSWER_BAD_ARGUMENT;
 	if (c->limit.on & todo)
 		return ANSWER_AT_LIMIT;
+	for (uint32_t left = todo; left; left &= left - 1)
+		home_aim(c, (uint32_t)__builtin_ctz(left));
 	c->manual.todo = todo;
 	c->manual.homed &= ~todo;
 	c->manual.halt = false;

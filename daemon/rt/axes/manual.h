@@ -68,6 +68,9 @@ struct manual {
 	uint32_t todo;			/* home: bit per axis still to do */
 	enum home_phase phase;
 	double phase_mm;		/* gone_mm when the phase began */
+	int64_t end[INTERP_NAXES];	/* pulses: there its search ends */
+	uint32_t aimed;			/* bit per axis: it has such an end */
+	int64_t end_off;		/* the same, off the switch */
 	int32_t met;			/* pulses at the switch or mark */
 	uint32_t homed;			/* bit per axis */
 	uint32_t unplaced;		/* bit per axis whose drive lost its
@@ -111,7 +114,8 @@ bool manual_ends(const struct cycle *c);
 /** manual_go() - one period of what was begun. Return: true once it is over. */
 bool manual_go(struct cycle *c, const struct io_inputs *in);
 
-/* home.c, for manual.c: one period of homing. */
+/* home.c, for manual.c: where the search of @axis ends; one period of it. */
+void home_aim(struct cycle *c, uint32_t axis);
 bool home_go(struct cycle *c, const struct io_inputs *in);
 
 /* manual.c, for home.c. */

@@ -321,6 +321,16 @@ void walk_pass_change(struct cycle *c, const struct interp_seg *s)
 		c->back_mm = fmax(c->back_mm, s->s_mm);
 }
 
+static enum walk_deed stops_for(const struct cycle *c,
+				const struct interp_seg *s)
+{
+	if (s->kind == INTERP_STOP)
+		return ACTION_HOLD;
+	if (s->kind == INTERP_OPTIONAL_STOP && c->config.optional_stop)
+		return ACTION_OPTIONAL;
+	return is_change(s) ? ACTION_ELECTRODE : ACTION_PASSED;
+}
+
 enum walk_deed walk_action(struct cycle *c)
 {
 	const uint32_t next = c->cursor.index + 1;
@@ -345,9 +355,5 @@ enum walk_deed walk_action(struct cycle *c)
 	if (first && s.kind == INTERP_TIMED)
 		timed_begin(c, s.arg);
 	walk_pass_change(c, &s);
-	if (first && (s.kind == INTERP_STOP || is_change(&s) ||
-		      (s.kind == INTERP_OPTIONAL_STOP &&
-		       c->config.optional_stop)))
-		return ACTION_HOLD;
-	return ACTION_PASSED;
+	return first ? stops_for(c, &s) : ACTION_PASSED;
 }

@@ -31,6 +31,8 @@ enum walk_deed {
 	ACTION_PASSED,			/* done, or being done */
 	ACTION_WAIT,			/* the PLC has to do something */
 	ACTION_HOLD,			/* a programmed stop */
+	ACTION_OPTIONAL,		/* M1, and the machine heeds it */
+	ACTION_ELECTRODE,		/* another electrode is to be put in */
 	ACTION_END,			/* the program is over */
 };
 

@@ -131,6 +131,13 @@ static int check_ring(struct nc_reader *r, const struct ring *g,
 
 /* -- The centre ----------------------------------------------------------- */
 
+/* What says a centre in this dialect. */
+static const char *centre_words(const struct nc_reader *r,
+				const struct nc_plane *p)
+{
+	return r->d->classes['R'] == NC_WORD + NC_R ? p->centre : "I and J";
+}
+
 static int by_centre(struct nc_reader *r, const struct nc_plane *p,
 		     const double end_mm[INTERP_NAXES],
 		     struct interp_build_arc *arc)
@@ -143,11 +150,12 @@ static int by_centre(struct nc_reader *r, const struct nc_plane *p,
 	const double cb = has_b ? b->value[p->cb] * r->unit_mm : 0;
 
 	if (nc_has(r, p->other))
-		return nc_refuse(r, b->at[p->other], p->centre,
+		return nc_refuse(r, b->at[p->other], centre_words(r, p),
 				 "%s for an arc in the plane %s",
 				 nc_quote_word(r, b->at[p->other]).s, p->name);
 	if (!has_a && !has_b)
-		return nc_refuse(r, at, p->centre, "an arc without a centre");
+		return nc_refuse(r, at, centre_words(r, p),
+				 "an arc without a centre");
 	if (r->d->arc_places && r->incremental)
 		return nc_refuse(r, at, "arcs under G90: I J are places there; "
 				 "under G91 controls of this family differ",

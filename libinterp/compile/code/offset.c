@@ -132,6 +132,19 @@ static int refuse_angle(struct nc_reader *r, const uint8_t *at, double deg)
 	return nc_refuse(r, at, wanted, "a taper of %g degrees", deg);
 }
 
+static int refuse_no_angle(struct nc_reader *r)
+{
+	char letter = 'A', wanted[64];
+
+	for (char c = 'A'; c <= 'Z'; c++)
+		if (r->d->classes[(uint8_t)c] == NC_WORD + NC_ANGLE)
+			letter = c;
+	snprintf(wanted, sizeof(wanted), "an angle in degrees, as in G51 %c2.5",
+		 letter);
+	return nc_refuse(r, r->block.code_at[NC_TAPER], wanted,
+			 "a taper without %c", letter);
+}
+
 /* In some dialects A is an axis and the angle of a taper; in others it is only
  * the angle. */
 int nc_take_angle(struct nc_reader *r)
@@ -149,8 +162,7 @@ int nc_take_angle(struct nc_reader *r)
 	else if (nc_has(r, slot))
 		r->slope = contour_tangent(&r->contour, b->value[slot]);
 	else if (r->slope == 0)
-		return nc_refuse(r, at, "an angle in degrees, as in G51 A2.5",
-				 "a taper without A");
+		return refuse_no_angle(r);
 	if (isnan(r->slope))
 		return refuse_angle(r, b->at[slot], b->value[slot]);
 	b->words &= ~NC_BIT(slot);

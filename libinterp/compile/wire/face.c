@@ -187,35 +187,149 @@ static int take_all(struct face *f, const struct face_from *from)
 
 /* -- Where it closes ------------------------------------------------------ */
 
+/* The outline behind @a pieces that lead in, before @b that lead out. */
+struct ring {
+	const struct face *f;
+	uint32_t a, b;
+	double pulse_mm;
+};
+
+static const struct curve *piece_of(const struct ring *r, uint32_t i)
+{
+	return &r->f->piece[i].c;
+}
+
+static bool is_one(const struct ring *r, struct vec p, struct vec q)
+{
+	return curve_distance(p, q) <= CLOSED_PULSES * r->pulse_mm;
+}
+
+static uint32_t ring_last(const struct ring *r)
+{
+	return r->f->n - 1 - r->b;
+}
+
+static bool ring_closes(const struct ring *r)
+{
+	const uint32_t last = ring_last(r);
+
+	return (r->a < last || piece_of(r, last)->arc) &&
+	       is_one(r, piece_of(r, r->a)->from, piece_of(r, last)->to);
+}
+
+static double length_of(const struct ring *r, uint32_t i, uint32_t end)
+{
+	double sum = 0;
+
+	for (; i < end; i++)
+		sum += curve_length(piece_of(r, i));
+	return sum;
+}
+
+/* The direction to the place @mm along the outline from the start of piece @i,
+ * or @back from its end. */
+static double direction(const struct ring *r, uint32_t i, bool back, double mm)
+{
+	const struct vec from = back ? piece_of(r, i)->to :
+				       piece_of(r, i)->from;
+	double share;
+	struct vec to;
+
+	while (mm > curve_length(piece_of(r, i)) &&
+	       (back ? i > 0 : i + 1 < r->f->n)) {
+		mm -= curve_length(piece_of(r, i));
+		i += back ? -1u : 1u;
+	}
+	share = curve_min(mm / curve_length(piece_of(r, i)), 1);
+	to = curve_at(piece_of(r, i), back ? 1 - share : share);
+	return atan2(to.y - from.y, to.x - from.x);
+}
+
+/* From direction @from to @to, the way round that @side tells (+1: left). */
+static double turn_to(double from, double to, int side)
+{
+	const double turn = fmod(side * (to - from), 4 * ANGLE_RIGHT);
+
+	return turn < 0 ? turn + 4 * ANGLE_RIGHT : turn;
+}
+
+/* Does what is in front of the ring come from the wire's side, what is behind
+ * it go there, and the one cross the other? */
+static bool is_led_from(const struct ring *r, int side)
+{
+	const uint32_t last = ring_last(r);
+	const double in = r->a ? length_of(r, 0, r->a) : INFINITY;
+	const double out = r->b ? length_of(r, last + 1, r->f->n) : INFINITY;
+	const double ring = length_of(r, r->a, last + 1);
+	const double mm = curve_min(curve_min(in, out), ring / 4) / 2;
+	const double begin = direction(r, r->a, false, mm);
+	const double slack = r->pulse_mm / mm;
+	const double room = turn_to(begin, direction(r, last, true, mm),
+				    side) - slack;
+	const double from = r->a ? turn_to(begin, direction(
+				   r, r->a - 1, true, mm), side) : room;
+	const double to = r->b ? turn_to(begin, direction(
+				 r, last + 1, false, mm), side) : slack;
+
+	return from >= slack && from <= room && to >= slack && to <= room &&
+	       to <= from + slack;
+}
+
+/*
+ * Leads that touch the ring at one place.  What they are is no surface of the
+ * part, even if the one begins where the other ends: such an outline would
+ * cross itself.  A single circle may also be a part of an open contour, if
+ * lines go on from it.
+ */
+static bool ring_is_led(const struct ring *r, int side)
+{
+	const uint32_t a = r->a, last = ring_last(r);
+	const struct vec at = piece_of(r, a)->from;
+
+	if (!(a + r->b) ||
+	    (a && is_one(r, piece_of(r, 0)->from, at)) ||
+	    (r->b && is_one(r, piece_of(r, r->f->n - 1)->to, at)) ||
+	    (a == last && ((a && !piece_of(r, a - 1)->arc) ||
+			   (r->b && !piece_of(r, last + 1)->arc))))
+		return false;
+	return (side >= 0 && is_led_from(r, 1)) ||
+	       (side <= 0 && is_led_from(r, -1));
+}
+
+/* All of it, or all but a lead of any kind. */
+static bool ring_is_most(const struct ring *r)
+{
+	return !(r->a + r->b) || (r->f->n >= 4 && r->a < ring_last(r));
+}
+
+static bool find_ring(struct ring *r, int side, bool led)
+{
+	for (uint32_t sum = 0; sum <= 2 * LEAD_PIECES; sum++) {
+		for (r->a = 0; r->a <= sum && r->a <= LEAD_PIECES; r->a++) {
+			r->b = sum - r->a;
+			if (r->b <= LEAD_PIECES && sum < r->f->n &&
+			    ring_closes(r) &&
+			    (led ? ring_is_led(r, side) : ring_is_most(r)))
+				return true;
+		}
+	}
+	return false;
+}
+
 /*
  * A part's outline ends where it begins.  What is programmed in front of that
  * place (an arc that leads in) and behind it (one that leads out, or a little
  * more of the first motion) is no surface of the part.
  */
-static void find_closure(struct face *f, double pulse_mm)
+static void find_closure(struct face *f, const struct face_from *from)
 {
-	const uint32_t most = f->n < 4 ? 0 : LEAD_PIECES;
+	const double offset = from->m[from->first].offset_mm;
+	const int side = (offset > 0) - (offset < 0);
+	struct ring r = { .f = f, .pulse_mm = from->pulse_mm };
 
-	for (uint32_t sum = 0; sum <= 2 * most; sum++) {
-		for (uint32_t a = 0; a <= sum && a <= most; a++) {
-			const uint32_t b = sum - a;
-
-			if (b > most || a + b + 2 > f->n ||
-			    curve_distance(f->piece[a].c.from,
-					 f->piece[f->n - 1 - b].c.to) >
-			    CLOSED_PULSES * pulse_mm)
-				continue;
-			for (uint32_t i = 0; i < a; i++)
-				f->piece[i].lead = true;
-			for (uint32_t i = 0; i < b; i++)
-				f->piece[f->n - 1 - i].lead = true;
-			f->closed = true;
-			return;
-		}
-	}
-	f->closed = f->n == 1 && f->piece[0].c.arc &&
-		    curve_distance(f->piece[0].c.from, f->piece[0].c.to) <
-		    CLOSED_PULSES * pulse_mm;
+	f->closed = find_ring(&r, side, true) || find_ring(&r, side, false);
+	for (uint32_t i = 0; f->closed && i < f->n; i++)
+		f->piece[i].lead = i < r.a || i > ring_last(&r);
 }
 
 static bool is_moved(const struct face_from *from)
@@ -238,7 +352,7 @@ int face_make(struct face *f, const struct face_from *from,
 	if (!err && is_moved(from)) {
 		still = *f;
 		*f = (struct face) { .n = 0 };
-		find_closure(&still, from->pulse_mm);
+		find_closure(&still, from);
 		closed = still.closed;
 		err = face_move(f, from, &still, fault);
 		face_free(&still);
@@ -248,7 +362,7 @@ int face_make(struct face *f, const struct face_from *from,
 		way += curve_length(&f->piece[i].c);
 	}
 	if (!err)
-		find_closure(f, from->pulse_mm);
+		find_closure(f, from);
 	f->written_closed = closed || f->closed;
 	return err;
 }

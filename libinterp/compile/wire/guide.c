@@ -292,8 +292,10 @@ static int cut_bottom(const struct cut *k)
 	memcpy(end, k->end_mm, sizeof(end));
 	end[INTERP_X] = c->to.x;
 	end[INTERP_Y] = c->to.y;
-	/* The builder makes no circle of half a pulse or less. */
-	return c->arc && c->r > 0.51 * k->g->pulse_mm ?
+	/* The builder makes no circle of half a pulse or less, and takes an arc
+	 * whose ends are one for a whole turn. */
+	return c->arc && c->r > 0.51 * k->g->pulse_mm &&
+	       curve_length(c) > k->g->pulse_mm ?
 	       interp_build_arc(k->g->build, end, &arc, k->w, k->diag) :
 	       interp_build_line(k->g->build, end, k->w, k->diag);
 }

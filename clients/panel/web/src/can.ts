@@ -20,6 +20,7 @@ function word(act: Act): Word | "" {
 		if (runs) return "no.runs";
 		if (BY_HAND.has(s.state)) return "no.moving";
 		if (s.interrupted && !s.loaded) return "why.interrupted";
+		if (s.asks) return "no.asks";
 		return s.state === "hold" || s.queue > 0 || s.job ? "" : "no.job";
 	case "hold": return runs || BY_HAND.has(s.state) ? "" : "no.still";
 	case "retract":

@@ -124,17 +124,25 @@ function chips(): Chip[] {
 	];
 }
 
+// What ends the state that it is in, if it is not the start.
+function Middle(): JSX.Element {
+	const s = link.state;
+	if (s.state === "fault") return <Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key>;
+	if (!s.asks) return <Key id="hold" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>;
+	const electrode = s.stand === "electrode";
+	return <PressKey id="done" class="primary" why={whyNot("retract")} onPress={() => void act("done", { arg: electrode ? s.standOf : 0 })}>
+		{!electrode ? t("done.set") : s.standOf ? t("done.electrode", { n: s.standOf }) : t("done.empty")}</PressKey>;
+}
+
 function Foot(p: { open: (what: string) => void }): JSX.Element {
 	const s = link.state, held = s.state === "hold" && s.far > 0;
-	const fault = s.state === "fault";
 	return <footer class="foot">
 		<div class="chips">{chips().map((c) => <button type="button" id={`chip-${c.id}`} class={`chip ${s.set.some((f) => c.open.split(" ").includes(f)) ? "set" : ""}`} onClick={() => p.open(c.open)}>
 			<span>{c.label}</span><b>{c.text}</b></button>)}</div>
 		<div class="keys">
 			<Key id="retract" why={whyNot("retract")} onPress={() => p.open("retract")}>{t("retract")}</Key>
-			{fault ? <Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key> :
-				<Key id="hold" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>}
-			<PressKey id="start" class={isRunning() ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
+			<Middle />
+			<PressKey id="start" class={isRunning() || s.asks ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
 				onPress={() => void act("start")}>{t(held ? "resume" : "start")}</PressKey>
 		</div>
 	</footer>;

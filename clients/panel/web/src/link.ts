@@ -31,7 +31,7 @@ export interface State {
 	set: string[]; jobs: boolean; job: string; jobName: string; jobState: string;
 	lines: number; queue: number; eta: number; store: string;
 	interrupted: string; lost: string; faults: string; hunts: number;
-	electrode: number;
+	electrode: number; stand: string; standOf: number; asks: boolean;
 }
 
 // t ms, gap min mean max, feed min mean max, depth, state number
@@ -54,7 +54,7 @@ const EMPTY: State = {
 	overruns: 0, lateMaxUs: 0, tookMaxUs: 0, periodUs: 0, jobS: 0, condition: "",
 	values: {}, set: [], jobs: false, job: "", jobName: "", jobState: "",
 	lines: 0, queue: 0, eta: -1, store: "", interrupted: "", lost: "",
-	faults: "", hunts: 0, electrode: 0,
+	faults: "", hunts: 0, electrode: 0, stand: "", standOf: 0, asks: false,
 };
 
 const POINTS_KEPT = 620;

@@ -5,6 +5,9 @@ import { number } from "./format";
 import { link } from "./link";
 import { faultWords, isWord, stateWord, t } from "./words";
 
+// Stands that somebody confirms.
+const CONFIRMED = new Set(["electrode", "setting"]);
+
 export interface StateLine {
 	title: string; why: string;
 	tone: "calm" | "busy" | "warn" | "bad";
@@ -38,8 +41,18 @@ function held(): StateLine {
 	const ready = s.jobState === "ready" || s.far === 0;
 	return {
 		title: ready ? t("state.ready") : stateWord("hold"), tone: "warn", shape: "bars",
-		why: ready ? t("why.ready", { job: s.jobName || s.job }) : t("why.hold"),
+		why: ready ? t("why.ready", { job: s.jobName || s.job }) : stands() || t("why.hold"),
 	};
+}
+
+/** Why it stands or waits, and what ends that; "" if it does not. */
+function stands(): string {
+	const s = link.state, word = `stand.${s.stand}${s.asks || !CONFIRMED.has(s.stand) ? "" : ".done"}`;
+	return isWord(word) ? t(word, { n: s.standOf, line: s.line, held: s.electrode || "\u2013", condition: s.condition, fields: fieldsOf(s.standOf) }) : "";
+}
+
+function fieldsOf(bits: number): string {
+	return (link.hello?.fields ?? []).filter((_, i) => bits >> i & 1).map((f) => f.name).join(", ");
 }
 
 function machineLine(): StateLine {
@@ -59,6 +72,7 @@ function machineLine(): StateLine {
 	if (s.state === "idle") return { title: stateWord("idle"), why: idle(), tone: "calm", shape: "ring" };
 	if (s.state === "hold") return held();
 	const word = `why.${s.state}`;
+	if (s.stand) return { title: stateWord(s.state), tone: "warn", shape: "bars", why: stands() };
 	return {
 		title: stateWord(s.state), tone: "busy", shape: s.state === "erode" ? "play" : "square",
 		why: isWord(word) ? t(word, { line: s.line, mm: number(s.values.jump_mm ?? 0, 1) }) : "",

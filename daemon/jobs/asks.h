@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * asks.h - why the machine stands, and what it asks of whom, in words
+ *
+ * words/stands.h has the reasons.  What only this service knows is added: the
+ * name of the electrode, the line of the program, who held it.
+ *
+ * Threads: one, that of the event loop.
+ */
+#ifndef JOBS_ASKS_H
+#define JOBS_ASKS_H
+
+#include "shm.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct jobs;
+struct verb;
+struct jobs_lcm_command;
+
+#define ASKS_TEXT_MAX	400
+
+struct asks_what {
+	uint32_t why, of, line;		/* shm_snapshot: stand, stand_of */
+	bool confirmed;
+};
+
+/* All 0 at first. */
+struct asks {
+	uint32_t program;		/* what `text` was made of */
+	struct asks_what what;
+	char text[ASKS_TEXT_MAX];
+	char by[64];			/* who held, or confirms */
+};
+
+/** asks_name() - the word of STATUS: "electrode"; "queue": jobs wait; only
+ *  with a text. */
+const char *asks_name(const struct jobs *j);
+
+/** asks_text() - what it is, and what ends it; "" as above. */
+const char *asks_text(struct jobs *j);
+
+/** asks_stood_s() - how long; 0 if it does not. */
+double asks_stood_s(const struct jobs *j);
+
+/** asks_event() - take a SHM_EV_STAND of the loaded job. */
+void asks_event(struct jobs *j, const struct shm_event *e);
+
+/** asks_held() - this command holds the machine. */
+void asks_held(struct jobs *j, const struct jobs_lcm_command *c);
+
+/** asks_confirmed() - edmd has taken the confirmation. */
+void asks_confirmed(struct jobs *j);
+
+#endif /* JOBS_ASKS_H */

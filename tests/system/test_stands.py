@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Why a job stands, what it asks for, and what ends that: words/stands.h."""
+
+import json
+import pathlib
+import re
+
+import pytest
+import rig
+from test_power import die
+
+MACHINE = rig.NULL_MACHINE + "\n[tech]\ntable = shop.tech\n"
+TABLE = "condition, servo_v, on_us\nC100, 20, 10\nC200, 20, 20\n"
+CHANGE = (b"G21 G90 F600\nG0 Z2\nT3 M6\nG1 Z1\nM0 (turn the part)\nG1 Z0\n"
+          b"G0 Z2\nM30\n")
+EMPTY = b"G21 G90 F600\nG0 Z2\nT0 M6\nG1 Z1\nM30\n"
+
+
+@pytest.fixture
+def off(tmp_path):
+    with rig.Machine(tmp_path, MACHINE) as m:
+        (tmp_path / "shop.tech").write_text(TABLE)
+        yield m
+
+
+@pytest.fixture
+def shop(off):
+    off.start()
+    off.client.status_where(lambda s: s.daemon == "ok")
+    return off
+
+
+def ctl(m, *words, code=0):
+    r = m.ctl(*words)
+    assert r.returncode == code, (words, r.returncode, r.stdout, r.stderr)
+    return r.stdout + r.stderr
+
+
+def stands(m, name):
+    return m.client.status_where(lambda s: s.stand == name, 20)
+
+
+def at_the_change(m):
+    ctl(m, "electrode", "add", "1", "name=rough")
+    ctl(m, "electrode", "add", "3", "name=rib")
+    ctl(m, "electrode", "use", "1")
+    m.client.submit(CHANGE, "work")
+    return stands(m, "electrode")
+
+
+def held(m):
+    out = json.loads(ctl(m, "--json", "electrode", "list"))
+    return [e["n"] for e in out if e["held"]]
+
+
+def test_an_electrode_is_asked_for_and_confirmed(shop):
+    s = at_the_change(shop)
+    assert "put electrode 3 rib in (1 is in); edmctl done 3" in s.asks
+    assert "put electrode 3 rib in" in ctl(shop, "status")
+    said = ctl(shop, "start", code=1)
+    assert "not before this: put electrode 3 rib in" in said
+    assert held(shop) == [1]
+    said = ctl(shop, "done", "2", code=1)
+    assert "not what the machine asks for" in said
+    ctl(shop, "start", code=1)
+    ctl(shop, "done", "3")
+    s = shop.client.status_where(lambda s: "3 is in" in s.asks)
+    assert s.stand == "electrode" and held(shop) == [1]
+    ctl(shop, "start")
+    s = stands(shop, "stop")
+    assert held(shop) == [3]
+    assert "line 5: M0 (turn the part); edmctl start goes on" in s.asks
+    ctl(shop, "start")
+    shop.client.job_where("work", "done")
+    s = shop.client.status_where(lambda s: s.job == "")
+    assert (s.stand, s.asks, s.stand_s) == ("", "", 0)
+    told = shop.log("edmd-jobs")
+    assert re.search("line 3: another electrode.*: done, says [a-z]", told)
+    assert "stands: job job.ngc, line 5: the program stops" in told
+
+
+def test_nothing_that_comes_between_answers_for_it(shop):
+    """A hold, an emergency stop with its reset, a death of edmd."""
+    at_the_change(shop)
+    ctl(shop, "estop")
+    shop.client.status_where(lambda s: s.state == "fault")
+    ctl(shop, "reset")
+    assert "electrode 3" in stands(shop, "electrode").asks
+    ctl(shop, "start", code=1)
+    shop.kill("edmd")
+    shop.client.status_where(lambda s: s.daemon != "ok")
+    shop.start_edmd()
+    shop.client.status_where(lambda s: s.daemon == "ok")
+    shop.client.status_where(lambda s: s.state == "fault" or
+                             s.stand == "electrode")
+    if shop.client.status().state == "fault":
+        ctl(shop, "reset")
+    stands(shop, "electrode")
+    ctl(shop, "start", code=1)
+    assert held(shop) == [1]
+    ctl(shop, "done", "3")
+    ctl(shop, "start")
+    stands(shop, "stop")
+    assert held(shop) == [3]
+
+
+@pytest.mark.parametrize("confirms", [False, True])
+def test_a_power_cut_at_the_change_asks_again(shop, confirms):
+    """What was said before it is on no disk, and the holder may have been
+    emptied since."""
+    at_the_change(shop)
+    if confirms:
+        ctl(shop, "done", "3")
+    die(shop)
+    shop.start()
+    shop.client.status_where(lambda s: s.interrupted == "work", 10)
+    assert held(shop) == [1]
+    a = shop.client.ask("resume", "work", text="XYZABCUV")
+    assert a.code == 0, a.reason
+    shop.client.job_where("work", "ready")
+    ctl(shop, "start")
+    s = stands(shop, "electrode")
+    assert "put electrode 3 rib in (1 is in)" in s.asks
+    ctl(shop, "done", "3")
+    ctl(shop, "start")
+    stands(shop, "stop")
+    assert held(shop) == [3]
+
+
+@pytest.mark.parametrize("words", [
+    ["start"], ["resume"], ["start", "work"], ["resume", "work"], ["step", "+1"],
+    ["done"], ["done", "1"], ["done", "--", "-3"], ["done", "3.5"]],
+    ids="-".join)
+def test_no_other_word_answers_for_it(shop, words):
+    at_the_change(shop)
+    place = shop.client.status().place_mm
+    r = shop.ctl(*words)
+    assert r.returncode != 0, (words, r.stdout)
+    s = stands(shop, "electrode")
+    assert s.place_mm == place and held(shop) == [1]
+
+
+def test_a_way_back_in_the_middle_leaves_it_asked_for(shop):
+    at_the_change(shop)
+    ctl(shop, "retract", "0.5")
+    shop.client.status_where(lambda s: s.state == "hold")
+    ctl(shop, "start", code=1)
+    ctl(shop, "stop")
+    shop.client.job_where("work", "stopped")
+    assert held(shop) == [1]
+
+
+def test_an_empty_holder_is_asked_for(shop):
+    ctl(shop, "electrode", "add", "1")
+    ctl(shop, "electrode", "use", "1")
+    shop.client.submit(EMPTY, "empty")
+    s = stands(shop, "electrode")
+    assert "take the electrode out (1 is in); edmctl done 0" in s.asks
+    ctl(shop, "done", "0")
+    ctl(shop, "start")
+    shop.client.job_where("empty", "done")
+    assert held(shop) == []
+
+
+def test_done_where_nothing_is_asked_is_refused(shop):
+    assert "no job is loaded" in ctl(shop, "done", "3", code=1)
+    shop.client.submit(CHANGE.replace(b"T3 M6\n", b""), "work", hold=True)
+    s = stands(shop, "ready")
+    assert s.asks == "the job is ready; edmctl start begins it"
+    assert "not what the machine asks for" in ctl(shop, "done", code=1)
+    ctl(shop, "done", "three", code=64)
+
+
+def test_a_hold_says_whose_it_was(shop):
+    shop.client.submit(b"G21 G90 F6\nG1 Z-20\nM30\n", "long")
+    shop.client.status_where(lambda s: s.state not in ("idle", "hold"), 20)
+    ctl(shop, "hold")
+    s = stands(shop, "held")
+    assert s.asks.startswith("it was held by command of ")
+    why = shop.client.ask("why")
+    assert "held by command" in why.body
+    until = s.stand_s
+    shop.client.status_where(lambda s: s.stand_s > until)
+    ctl(shop, "override", "0")
+
+
+def test_every_stand_is_written_where_people_look():
+    table = re.findall(r'^S\(\w+, "([a-z-]+)"',
+                       pathlib.Path("daemon/words/stands.h").read_text(), re.M)
+    assert len(table) > 10
+    page = pathlib.Path("docs/architecture.md").read_text()
+    web = pathlib.Path("clients/panel/web/src")
+    words = [(web / f).read_text() for f in ("words.ts", "zh.ts")]
+    for name in table:
+        assert f"| `{name}` |" in page, name
+        for text in words:
+            assert f'"stand.{name}"' in text or name == "ready", name
