@@ -15,6 +15,9 @@
 
 #define ARC_RAD		(M_PI / 8)	/* between two looks at an arc */
 #define CURVE_LOOKS	17
+#define NEAR		1.05		/* the speeds at two neighbours of these
+					 * differ by no more */
+#define HALVINGS	6
 
 /* Beside the path, a rounding of it counts so often. */
 #define RATE_MOST	20
@@ -138,16 +141,61 @@ static uint32_t looks_of(const struct interp_program *p,
 	return 2 + (uint32_t)(sweep / ARC_RAD);
 }
 
+/* A look at a segment, and how fast the axes could pass it on a curve. */
+struct spot {
+	double s_mm, v_mm_s;
+};
+
+static int look_at_spot(struct making *m, const struct section *s,
+			struct spot *at)
+{
+	static const struct interp_straight none = { 0, 0 };
+	struct looks *of = &m->to->of[s->from];
+	double way[INTERP_NAXES * INTERP_AXES_WAY];
+	struct interp_straight left;
+	int err = look(m, s, at->s_mm, of);
+
+	of->n++;
+	if (err < 0 || m->to->p->segs[s->from].kind != INTERP_CURVE)
+		return err;
+	looks_way(m->to, m->to->n - 1, way);
+	at->v_mm_s = interp_axes_mm_s(&m->to->axes, way, &none, &left);
+	return 0;
+}
+
+/* A bend may be so narrow that two looks only show where it begins. */
+static int look_between(struct making *m, const struct section *s,
+			const struct spot *a, const struct spot *b,
+			int halvings)
+{
+	struct spot middle = { (a->s_mm + b->s_mm) / 2, 0 };
+	int err;
+
+	if (halvings == 0 || larger(a->v_mm_s, b->v_mm_s) <=
+			     NEAR * smaller(a->v_mm_s, b->v_mm_s))
+		return 0;
+	err = look_at_spot(m, s, &middle);
+	if (err == 0)
+		err = look_between(m, s, a, &middle, halvings - 1);
+	return err < 0 ? err : look_between(m, s, &middle, b, halvings - 1);
+}
+
 static int look_at_seg(struct making *m, const struct section *s)
 {
 	const struct interp_seg *seg = &m->to->p->segs[s->from];
-	struct looks *k = &m->to->of[s->from];
+	const uint32_t looks = looks_of(m->to->p, seg);
+	struct spot last = { 0, 0 };
 	int err = 0;
 
-	k->n = looks_of(m->to->p, seg);
-	for (uint32_t n = 0; err == 0 && n < k->n; n++)
-		err = look(m, s, k->n == 1 ? seg->s_mm :
-			   seg->s_mm + seg->length_mm * n / (k->n - 1), k);
+	for (uint32_t n = 0; err == 0 && n < looks; n++) {
+		struct spot at = { looks == 1 ? seg->s_mm : seg->s_mm +
+				   seg->length_mm * n / (looks - 1), 0 };
+
+		err = look_at_spot(m, s, &at);
+		if (err == 0 && n > 0 && seg->kind == INTERP_CURVE)
+			err = look_between(m, s, &last, &at, HALVINGS);
+		last = at;
+	}
 	return err;
 }
 

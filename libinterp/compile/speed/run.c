@@ -20,6 +20,8 @@
 #define RATE_MOST	20		/* beside the path, a rounding of it
 					 * counts so often */
 #define POINT_MM	0.025		/* between points */
+#define LINE_POINTS	4		/* a line has no more: it sags by a
+					 * parabola at most */
 #define END_WEIGHT_MM	0.05
 
 static double at(const struct run *r, size_t i, uint32_t k)
@@ -177,7 +179,8 @@ static void points_free(struct points *p)
 
 static size_t parts_of_line(double mm)
 {
-	return (size_t)larger(ceil(mm / POINT_MM - 1e-9), 1);
+	return (size_t)larger(smaller(ceil(mm / POINT_MM - 1e-9), LINE_POINTS),
+			      1);
 }
 
 static int points_make(struct points *p, const struct run *r, size_t first,
