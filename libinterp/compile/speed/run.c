@@ -14,6 +14,8 @@
 #include <string.h>
 
 #define CHORD		20		/* tolerances: over it a turn shows */
+#define CHORDS		3		/* one WIDER than the other */
+#define WIDER		4
 #define CORNER		4		/* boxes: turned by more over a chord */
 #define BESIDE		3		/* times as much as a chord away */
 #define RATE_MM		0.1		/* to both sides */
@@ -75,16 +77,22 @@ static double chord_mm(const struct run *r)
 	return CHORD * most;
 }
 
+/* Where turns are looked at, and over which chords. */
+struct field {
+	size_t first, last;
+	double mm;
+};
+
 /* How much the path turns at node @i over chords, as a share of what makes a
  * corner. */
-static double turn_at(const struct run *r, size_t i, size_t first, size_t last)
+static double turn_at(const struct run *r, size_t i, const struct field *f)
 {
 	struct chords c;
 	double most = 0, least_mm;
 
-	if (i <= first || i >= last)
+	if (i <= f->first || i >= f->last)
 		return 0;
-	c = chords_of(r, i, 0.95 * chord_mm(r), first, last);
+	c = chords_of(r, i, 0.95 * f->mm, f->first, f->last);
 	least_mm = smaller(r->s_mm[i] - r->s_mm[c.before],
 			   r->s_mm[c.behind] - r->s_mm[i]);
 	for (uint32_t k = 0; k < r->columns; k++) {
@@ -99,13 +107,13 @@ static double turn_at(const struct run *r, size_t i, size_t first, size_t last)
 
 /* Which node of those turns most? */
 static size_t sharpest(const struct run *r, size_t from, size_t to,
-		       size_t first, size_t last)
+		       const struct field *f)
 {
 	double most = 0;
 	size_t ret = from;
 
 	for (size_t i = from; i <= to; i++) {
-		const double turn = turn_at(r, i, first, last);
+		const double turn = turn_at(r, i, f);
 
 		if (turn > most)
 			ret = i;
@@ -143,20 +151,42 @@ static bool is_sharp(const struct run *r, size_t i)
 	return false;
 }
 
-static bool is_corner(const struct run *r, size_t i)
+/*
+ * Does node @i turn most of those around it, and others a chord away hardly?
+ * There is no corner within the chord that shows over a narrower one.  @narrow:
+ * how much it turns there.  A corner turns as much, but for what a rounding
+ * makes; a bend does not.
+ */
+static bool stands_out(const struct run *r, size_t i, const struct field *f,
+		       double narrow, const uint8_t *corner)
 {
-	const size_t last = r->n - 1;
-	const double turn = turn_at(r, i, 0, last);
+	const double turn = turn_at(r, i, f);
 	struct chords c;
 
-	if (is_sharp(r, i))
-		return true;
-	if (turn <= 1)
+	if (turn <= 1 || turn > WIDER * (narrow + 1))
 		return false;
-	c = chords_of(r, i, 0.95 * chord_mm(r), 0, last);
-	return sharpest(r, c.before, c.behind, 0, last) == i &&
-	       turn > BESIDE * turn_at(r, c.before, 0, last) &&
-	       turn > BESIDE * turn_at(r, c.behind, 0, last);
+	c = chords_of(r, i, 0.95 * f->mm, f->first, f->last);
+	return turn > BESIDE * turn_at(r, c.before, f) &&
+	       turn > BESIDE * turn_at(r, c.behind, f) &&
+	       !memchr(corner + c.before, 1, c.behind - c.before + 1) &&
+	       sharpest(r, c.before, c.behind, f) == i;
+}
+
+/* Those that lines show by themselves, and then those that show over wider and
+ * wider chords: softer ones. */
+static void mark_corners(const struct run *r, uint8_t *corner, double *turn)
+{
+	struct field f = { 0, r->n - 1, chord_mm(r) };
+
+	for (size_t i = 1; i < f.last; i++) {
+		corner[i] = is_sharp(r, i);
+		turn[i] = INFINITY;
+	}
+	for (int n = 0; n < CHORDS; n++, f.mm *= WIDER)
+		for (size_t i = 1; i < f.last; i++) {
+			corner[i] |= stands_out(r, i, &f, turn[i], corner);
+			turn[i] = turn_at(r, i, &f);
+		}
 }
 
 /* -- Points ---------------------------------------------------------------- */
@@ -353,15 +383,14 @@ static size_t cut_at(const struct run *r, const struct points *p, size_t i,
 		     const struct run_part *part)
 {
 	const size_t node = p->node[i];
-	const struct chords c = chords_of(r, node, 2.5 * chord_mm(r),
+	const struct field f = { part->first, part->last, chord_mm(r) };
+	const struct chords c = chords_of(r, node, 2.5 * f.mm,
 					  part->first, part->last);
 	const size_t from = c.before > part->first ? c.before :
 						     part->first + 1;
 	const size_t to = c.behind < part->last ? c.behind : part->last - 1;
-	const size_t ret = sharpest(r, from, to < from ? from : to,
-				    part->first, part->last);
 
-	return ret;
+	return sharpest(r, from, to < from ? from : to, &f);
 }
 
 /* Return: 0; @ret_cut: where to cut it, or its last node. */
@@ -415,11 +444,17 @@ static int push(struct ends *e, size_t node)
 
 static int find_corners(const struct run *r, struct ends *e)
 {
-	int err = push(e, r->n - 1);
+	uint8_t *corner = calloc(r->n, sizeof(*corner));
+	double *turn = calloc(r->n, sizeof(*turn));
+	int err = corner && turn ? push(e, r->n - 1) : -ENOMEM;
 
+	if (err == 0)
+		mark_corners(r, corner, turn);
 	for (size_t i = r->n - 1; err == 0 && i-- > 1;)
-		if (is_corner(r, i))
+		if (corner[i])
 			err = push(e, i);
+	free(corner);
+	free(turn);
 	return err;
 }
 

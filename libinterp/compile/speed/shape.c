@@ -74,16 +74,31 @@ static double begin_mm(const struct shape *f, size_t interval)
 	return f->knot_mm[interval + DEGREE];
 }
 
-/* What column @k is on an interval. */
-static void column_of(const struct shape *f, size_t interval,
-		      const struct basis *b, uint32_t k, double ret[ORDER])
+/* Column @k of an interval, by the share u of it. */
+static double *column_of(const struct shape *f, size_t interval, uint32_t k)
 {
-	for (int e = 0; e < ORDER; e++) {
-		ret[e] = 0;
-		for (size_t r = 0; r < ORDER; r++)
-			ret[e] += b->of[r][e] *
-				  f->c[(interval + r) * f->columns + k];
+	return f->c + (interval * f->columns + k) * ORDER;
+}
+
+/* From @by, so much of each function in each column. */
+static int to_polynomials(struct shape *f, const double *by)
+{
+	double *c = calloc(f->n * f->columns, ORDER * sizeof(*c));
+	struct basis b;
+
+	if (!c)
+		return -ENOMEM;
+	free(f->c);
+	f->c = c;
+	for (size_t i = 0; i < f->n; i++) {
+		basis_of(f, i, &b);
+		for (uint32_t k = 0; k < f->columns; k++, c += ORDER)
+			for (size_t r = 0; r < ORDER; r++)
+				for (int e = 0; e < ORDER; e++)
+					c[e] += b.of[r][e] *
+						by[(i + r) * f->columns + k];
 	}
+	return 0;
 }
 
 /* -- Least squares --------------------------------------------------------- */
@@ -139,6 +154,7 @@ static int solve(struct shape *f, const struct shape_points *p)
 {
 	struct band eq;
 	size_t i = 0;
+	int err;
 
 	if (band_make(&eq, f->n + DEGREE, f->columns) < 0)
 		return -ENOMEM;
@@ -159,10 +175,9 @@ static int solve(struct shape *f, const struct shape_points *p)
 		add_stiffness(&b, k, h, &eq);
 	}
 	band_solve(&eq);
-	free(eq.a);
-	free(f->c);
-	f->c = eq.b;
-	return 0;
+	err = to_polynomials(f, eq.b);
+	band_free(&eq);
+	return err;
 }
 
 /* -- Intervals ------------------------------------------------------------- */
@@ -188,14 +203,11 @@ static struct off off_of(const struct shape *f, const struct shape_points *p,
 	const double from = begin_mm(f, interval);
 	const double h = begin_mm(f, interval + 1) - from;
 	struct off ret = { 0, first, 0 };
-	struct basis b;
 
-	basis_of(f, interval, &b);
 	for (uint32_t k = 0; k < f->columns; k++) {
-		double c[ORDER];
+		const double *c = column_of(f, interval, k);
 		size_t i = first;
 
-		column_of(f, interval, &b, k, c);
 		for (; is_on(f, p, interval, i); i++) {
 			const size_t at = i * p->columns + k;
 			const double off = fabs(polynomial(
@@ -363,14 +375,11 @@ void shape_way(const struct shape *f, double s_mm, double *ret)
 {
 	const size_t k = interval_at(f, s_mm);
 	const double h = begin_mm(f, k + 1) - begin_mm(f, k);
-	struct basis b;
 
-	basis_of(f, k, &b);
 	for (uint32_t j = 0; j < f->columns; j++) {
-		double c[ORDER], d[4];
+		double d[4];
 
-		column_of(f, k, &b, j, c);
-		derivatives(c, (s_mm - begin_mm(f, k)) / h, d);
+		derivatives(column_of(f, k, j), (s_mm - begin_mm(f, k)) / h, d);
 		*ret++ = d[1] / h;
 		*ret++ = d[2] / (h * h);
 		*ret++ = d[3] / (h * h * h);

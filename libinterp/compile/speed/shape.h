@@ -32,7 +32,8 @@ struct shape {
 	uint32_t columns;
 	size_t n;			/* intervals */
 	double *knot_mm;		/* n + 11 of them */
-	double *c;			/* n + 5 for each column */
+	double *c;			/* 6 for each column of an interval: its
+					 * powers there */
 };
 
 /**
