@@ -77,27 +77,17 @@ static double chord_mm(const struct run *r)
 	return CHORD * most;
 }
 
-/* Where turns are looked at, and over which chords. */
-struct field {
-	size_t first, last;
-	double mm;
-};
-
 /* How much the path turns at node @i over chords, as a share of what makes a
  * corner. */
-static double turn_at(const struct run *r, size_t i, const struct field *f)
+static double turn_over(const struct run *r, size_t i, const struct chords *c)
 {
-	struct chords c;
-	double most = 0, least_mm;
+	const double least_mm = smaller(r->s_mm[i] - r->s_mm[c->before],
+					r->s_mm[c->behind] - r->s_mm[i]);
+	double most = 0;
 
-	if (i <= f->first || i >= f->last)
-		return 0;
-	c = chords_of(r, i, 0.95 * f->mm, f->first, f->last);
-	least_mm = smaller(r->s_mm[i] - r->s_mm[c.before],
-			   r->s_mm[c.behind] - r->s_mm[i]);
 	for (uint32_t k = 0; k < r->columns; k++) {
-		const double a = slope(r, c.before, i, k);
-		const double b = slope(r, i, c.behind, k);
+		const double a = slope(r, c->before, i, k);
+		const double b = slope(r, i, c->behind, k);
 
 		most = larger(most, fabs(b - a) * least_mm /
 			      (CORNER * box_of(r, k, fabs(a) + fabs(b))));
@@ -105,21 +95,19 @@ static double turn_at(const struct run *r, size_t i, const struct field *f)
 	return most;
 }
 
-/* Which node of those turns most? */
-static size_t sharpest(const struct run *r, size_t from, size_t to,
-		       const struct field *f)
+/* At each node of a run, over chords of @mm. */
+static void turns_of(const struct run *r, double mm, double *turn)
 {
-	double most = 0;
-	size_t ret = from;
+	struct chords c = { 0, 0 };
 
-	for (size_t i = from; i <= to; i++) {
-		const double turn = turn_at(r, i, f);
-
-		if (turn > most)
-			ret = i;
-		most = larger(most, turn);
+	for (size_t i = 1; i + 1 < r->n; i++) {
+		while (r->s_mm[i] - r->s_mm[c.before + 1] >= mm)
+			c.before++;
+		while (c.behind + 1 < r->n && r->s_mm[c.behind] - r->s_mm[i] <
+					      mm)
+			c.behind++;
+		turn[i] = turn_over(r, i, &c);
 	}
-	return ret;
 }
 
 /* By how much column @k turns at node @i. */
@@ -151,42 +139,53 @@ static bool is_sharp(const struct run *r, size_t i)
 	return false;
 }
 
+/* How much each node turns over the chords in hand, and over narrower ones. */
+struct turns {
+	double mm;			/* of a chord */
+	double *over, *narrow;
+	uint8_t *corner;		/* which nodes are */
+};
+
 /*
  * Does node @i turn most of those around it, and others a chord away hardly?
- * There is no corner within the chord that shows over a narrower one.  @narrow:
- * how much it turns there.  A corner turns as much, but for what a rounding
- * makes; a bend does not.
+ * There is no corner within the chord that shows over a narrower one.  A corner
+ * turns as much there, but for what a rounding makes; a bend does not.
  */
-static bool stands_out(const struct run *r, size_t i, const struct field *f,
-		       double narrow, const uint8_t *corner)
+static bool stands_out(const struct run *r, size_t i, const struct turns *t)
 {
-	const double turn = turn_at(r, i, f);
+	const double turn = t->over[i];
 	struct chords c;
 
-	if (turn <= 1 || turn > WIDER * (narrow + 1))
+	if (turn <= 1 || turn > WIDER * (t->narrow[i] + 1))
 		return false;
-	c = chords_of(r, i, 0.95 * f->mm, f->first, f->last);
-	return turn > BESIDE * turn_at(r, c.before, f) &&
-	       turn > BESIDE * turn_at(r, c.behind, f) &&
-	       !memchr(corner + c.before, 1, c.behind - c.before + 1) &&
-	       sharpest(r, c.before, c.behind, f) == i;
+	c = chords_of(r, i, t->mm, 0, r->n - 1);
+	if (BESIDE * larger(t->over[c.before], t->over[c.behind]) >= turn ||
+	    memchr(t->corner + c.before, 1, c.behind - c.before + 1))
+		return false;
+	for (size_t k = c.before; k <= c.behind; k++)
+		if (t->over[k] > turn || (k < i && t->over[k] == turn))
+			return false;
+	return true;
 }
 
 /* Those that lines show by themselves, and then those that show over wider and
  * wider chords: softer ones. */
-static void mark_corners(const struct run *r, uint8_t *corner, double *turn)
+static void mark_corners(const struct run *r, struct turns *t)
 {
-	struct field f = { 0, r->n - 1, chord_mm(r) };
-
-	for (size_t i = 1; i < f.last; i++) {
-		corner[i] = is_sharp(r, i);
-		turn[i] = INFINITY;
+	for (size_t i = 1; i + 1 < r->n; i++) {
+		t->corner[i] = is_sharp(r, i);
+		t->over[i] = INFINITY;
 	}
-	for (int n = 0; n < CHORDS; n++, f.mm *= WIDER)
-		for (size_t i = 1; i < f.last; i++) {
-			corner[i] |= stands_out(r, i, &f, turn[i], corner);
-			turn[i] = turn_at(r, i, &f);
-		}
+	t->mm = 0.95 * chord_mm(r);
+	for (int n = 0; n < CHORDS; n++, t->mm *= WIDER) {
+		double *const was = t->narrow;
+
+		t->narrow = t->over;
+		t->over = was;
+		turns_of(r, t->mm, t->over);
+		for (size_t i = 1; i + 1 < r->n; i++)
+			t->corner[i] |= stands_out(r, i, t);
+	}
 }
 
 /* -- Points ---------------------------------------------------------------- */
@@ -382,15 +381,24 @@ static bool is_line(const struct points *p, const struct run *r,
 static size_t cut_at(const struct run *r, const struct points *p, size_t i,
 		     const struct run_part *part)
 {
-	const size_t node = p->node[i];
-	const struct field f = { part->first, part->last, chord_mm(r) };
-	const struct chords c = chords_of(r, node, 2.5 * f.mm,
-					  part->first, part->last);
-	const size_t from = c.before > part->first ? c.before :
-						     part->first + 1;
-	const size_t to = c.behind < part->last ? c.behind : part->last - 1;
+	const size_t first = part->first + 1, last = part->last - 1;
+	const size_t node = p->node[i] < first ? first :
+			    p->node[i] > last ? last : p->node[i];
+	const double mm = chord_mm(r);
+	const struct chords near = chords_of(r, node, 2.5 * mm, first, last);
+	size_t ret = near.before;
+	double most = 0;
 
-	return sharpest(r, from, to < from ? from : to, &f);
+	for (size_t k = near.before; k <= near.behind; k++) {
+		const struct chords c = chords_of(r, k, 0.95 * mm,
+						  part->first, part->last);
+		const double turn = turn_over(r, k, &c);
+
+		if (turn > most)
+			ret = k;
+		most = larger(most, turn);
+	}
+	return ret;
 }
 
 /* Return: 0; @ret_cut: where to cut it, or its last node. */
@@ -444,17 +452,21 @@ static int push(struct ends *e, size_t node)
 
 static int find_corners(const struct run *r, struct ends *e)
 {
-	uint8_t *corner = calloc(r->n, sizeof(*corner));
-	double *turn = calloc(r->n, sizeof(*turn));
-	int err = corner && turn ? push(e, r->n - 1) : -ENOMEM;
+	struct turns t = {
+		.over = calloc(r->n, sizeof(double)),
+		.narrow = calloc(r->n, sizeof(double)),
+		.corner = calloc(r->n, 1),
+	};
+	int err = t.over && t.narrow && t.corner ? push(e, r->n - 1) : -ENOMEM;
 
 	if (err == 0)
-		mark_corners(r, corner, turn);
+		mark_corners(r, &t);
 	for (size_t i = r->n - 1; err == 0 && i-- > 1;)
-		if (corner[i])
+		if (t.corner[i])
 			err = push(e, i);
-	free(corner);
-	free(turn);
+	free(t.over);
+	free(t.narrow);
+	free(t.corner);
 	return err;
 }
 
