@@ -140,7 +140,7 @@ def test_a_curve_slower_than_its_feed_is_noted():
     assert "curves     1 in " in slow
     assert "from line 2 on: slower than F, it bends too much" in slow
     assert "slower" not in run("--check", text=sharp.replace(
-        "F6000", "F6")).stdout.decode()
+        "F6000", "F3")).stdout.decode()
 
 
 def test_a_curve_may_end_a_program_under_an_offset():

@@ -24,9 +24,8 @@ LONG_MM = 0.2
 GOAL = 1.005
 MOST = 1.015
 SHAPE_MOST = 1.1        # lines as short as their rounding
-HIDDEN_MIDDLE = 1.15
-HIDDEN_MOST = 1.3       # a corner that a rounding hides is passed as a bend
 CORNER_MOST = 1.03      # a short line's share of an axis is known to a rounding
+HIDDEN_MOST = 1.15      # of a corner of 2 degrees in lines of 5 um, one of 50
 
 
 def written(at, mm, decimals, way_mm=MM):
@@ -80,11 +79,13 @@ def corner_shares(folder, turns):
 def test_a_corner_of_short_lines_is_as_quick_as_of_long_ones(tmp_path, turns):
     """No less, and not much more.  Only the corner is slow: no node beside it,
     and not its neighbour in its place, also where lines are rounded to either
-    side of a chord's length.  A corner that a rounding may hide is a bend."""
-    shares = sorted(corner_shares(tmp_path, turns).values())
-    assert shares[0] >= 2 - GOAL
-    assert shares[len(shares) // 2] <= HIDDEN_MIDDLE
-    assert shares[-1] <= HIDDEN_MOST
+    side of a chord's length.  Where a rounding hides it, it is a bend."""
+    shares = corner_shares(tmp_path, turns)
+    over = {k: round(x, 4) for k, x in shares.items()
+            if not 2 - GOAL <= x <= CORNER_MOST}
+    assert min(shares.values()) >= 2 - GOAL, over
+    assert len(over) <= len(shares) // 50, over
+    assert max(shares.values()) <= HIDDEN_MOST, over
 
 
 ARC_LEAST = 0.9         # a step of the bend is rounded off at an arc's ends

@@ -304,8 +304,10 @@ static inline void check_axes(const struct track *k, const struct rig *r)
 		const double cut = cbrt(1.5 * onto * l->j_max_mm_s3 *
 					l->j_max_mm_s3) + onto / t / t +
 				   6e-9 / t / t;
-		const double more = rounding_of(r, i) * (1 + 1e-6);
-
+		/* Between two places of a curve an axis is taken for as fast
+		 * as a parabola's top. */
+		const double more = rounding_of(r, i) *
+				    (1 + (curve ? 1e-4 : 1e-6));
 		const bool beyond =
 			fabs(a[0]) > l->a_max_mm_s2 * more + cut +
 				     4 * off / t / t ||

@@ -524,8 +524,7 @@ static int turned_back(double mm, double turn, double back)
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 	const int there = (int)lround((1 + back) / mm);
 	const int n = there + (int)lround(back / mm);
-	/* Of a line of 20 um, a rounding of its ends is a tenth. */
-	const double most = 1.12 * slowest(1, M_PI, 0);
+	const double most = 1.05 * slowest(1, M_PI, 0);
 	double end[INTERP_NAXES] = { 0 };
 	struct made m;
 	int ret = 0;

@@ -130,7 +130,7 @@ static void an_arc_is_limited_by_what_its_axes_can_do(void **st)
 		struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 		const double r = radii[i];
 		const double end[INTERP_NAXES] = { r, r };
-		/* A part is left to go along it. */
+		/* Up to a half of them is kept to go along it. */
 		const double most = fmin(V_MAX, fmin(sqrt(A_MAX * r),
 						     cbrt(J_MAX * r * r)));
 		struct made m;
@@ -139,7 +139,7 @@ static void an_arc_is_limited_by_what_its_axes_can_do(void **st)
 		arc(b, end, 0, r, false);
 		m = finish(b);
 		v = (double)m.p.segs[1].feed_max_mm_s;
-		assert_true(v <= most && v >= most / 4);
+		assert_true(v <= most && v >= 0.45 * most);
 		unmake(&m);
 	}
 }
