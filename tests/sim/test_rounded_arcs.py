@@ -263,8 +263,8 @@ def test_whether_it_goes_round_is_told_by_what_is_written(kind, strategy, tmp_pa
             continue
         job = run("--machine", path, "--emit", "iso", text=text)
         emitted = places("--machine", path, "--dry-run", text=job.stdout.decode())
-        assert abs(pulses_of(emitted, (0, 1)) - pulses_of(here, (0, 1))) <= 4, \
-            (text, job.stdout)
+        assert abs(pulses_of(emitted, (0, 1)) - pulses_of(here, (0, 1))) < \
+            2 * a.r / 1e-2, (text, job.stdout)
 
 
 @pytest.mark.parametrize("dialect, text, taken", [
