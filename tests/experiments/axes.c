@@ -2,6 +2,7 @@
 /*
  * axes.c - three and more axes by each coupling, and circles by each rule
  */
+#include "interp/angle.h"
 #include "make_program.h"
 
 /* -- Lines in several axes ------------------------------------------------ */
@@ -122,7 +123,7 @@ static void circle_row(int r, struct how h)
 {
 	struct interp_build *b = build_as(h);
 	const struct interp_build_arc arc = {
-		.axis_a = INTERP_X, .axis_b = INTERP_Y, .clockwise = true,
+		.axis_a = INTERP_X, .axis_b = INTERP_Y, .sweep = -ANGLE_TURN,
 	};
 	const double end[INTERP_NAXES] = { r * 0.001 };
 	const int32_t start[INTERP_NAXES] = { r };

@@ -228,6 +228,45 @@ def test_it_is_cut_where_it_was_meant(units, decimals, strategy, tmp_path):
         assert abs(turned - a.turn) * a.r < 4 * n.digit_mm + 4e-3, by_centre(a)
 
 
+def pulses_of(rows, axes):
+    return int(sum(np.abs(np.diff(np.array(rows)[:, a])).sum() for a in axes))
+
+
+@pytest.mark.parametrize("strategy", ["simultaneous", "point-by-point", "centred",
+                                      "main-direction", "dda", "min-switch"])
+@pytest.mark.parametrize("kind", ["centre", "places", "G41", "UV"])
+def test_whether_it_goes_round_is_told_by_what_is_written(kind, strategy, tmp_path):
+    """Its ends are less than a pulse apart: in front of its start it goes round,
+    behind it it goes nowhere.  What is written of it by --emit says the same."""
+    write, dialect, _ = KINDS[kind]
+    n = Digits("G21", 6)
+    path = machine(tmp_path, 1e-2, wire=kind in ("G41", "UV"), strategy=strategy)
+    rnd = seeded()
+    for i in range(8):
+        a = Arc(rnd, n)
+        a.centre = a.centre / 20
+        a.r = math.exp(rnd.uniform(math.log(0.2), math.log(3)))
+        bit = math.exp(rnd.uniform(math.log(3e-6), math.log(9e-3))) / a.r
+        a.turn = bit if i % 2 else math.tau - bit
+        a.start, a.end = a.at(0), a.at(1)
+        text = program(n, ["H1=0"] * (kind == "G41") + write(a))
+        nowhere = re.sub(r"^(?:G90.1 )?G[23] (\S+ \S+).*$", r"G1 \1", text,
+                         flags=re.MULTILINE)
+        here, base = (places("--machine", path, "--dialect", dialect,
+                             "--dry-run", text=t) for t in (text, nowhere))
+        for axes in [(0, 1)] + [(6, 7)] * (kind == "UV"):
+            round_ = pulses_of(here, axes) - pulses_of(base, axes)
+            # The guides are beside the planes: they go round smaller circles.
+            most = 8 * a.r / 1e-2 * (0.7 if kind == "UV" else 0.9)
+            assert round_ < 8 if i % 2 else round_ > most, (round_, most, text)
+        if kind == "UV":                # two contours cannot be emitted
+            continue
+        job = run("--machine", path, "--emit", "iso", text=text)
+        emitted = places("--machine", path, "--dry-run", text=job.stdout.decode())
+        assert abs(pulses_of(emitted, (0, 1)) - pulses_of(here, (0, 1))) < \
+            2 * a.r / 1e-2, (text, job.stdout)
+
+
 @pytest.mark.parametrize("dialect, text, taken", [
     # A macro's value has the decimals that the control keeps.
     ("linuxcnc", "#1=5.00007\nG0 X0 Y0\nG3 X[#1*2] Y[0] I[5] J[0]", True),

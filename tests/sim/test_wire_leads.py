@@ -167,7 +167,7 @@ M2
     circle = Point(-0.03982 * 25.4, -0.08294 * 25.4).buffer(
         (math.hypot(0.01276, 0.00514) + 0.00591) * 25.4, 256).exterior
     assert all(path.distance(circle.interpolate(k / 360, normalized=True)) <
-               0.04 for k in range(360))
+               0.01 for k in range(360))
 
 
 def test_a_circle_stays_one_whose_ends_rounding_has_parted(plain):

@@ -202,9 +202,10 @@ def lead_ways(ways, lead, out):
     """The ways of a lead among those of a job, and the others."""
     if out:
         ways = ways[::-1]
-    n = arcs = 0
-    while n < len(ways) and not (n == 1 and not lead.centre) and arcs < 2:
-        arcs += bool(ways[n][3])
+    n, arc = 0, None
+    while n < len(ways) and not (n == 1 and not lead.centre) and \
+            (not arc or ways[n][3] and math.dist(ways[n][3][:2], arc) < 1e-5):
+        arc = arc or ways[n][3] and ways[n][3][:2]
         n += 1
     mine, rest = ways[:n], ways[n:]
     return (mine[::-1], rest[::-1]) if out else (mine, rest)

@@ -9,6 +9,7 @@
 #ifndef AXIS_TRACK_H
 #define AXIS_TRACK_H
 
+#include "arc_turn.h"
 #include "cycle_help.h"
 #include "seed.h"
 
@@ -90,11 +91,12 @@ static inline void random_arc(struct interp_build *b, uint64_t *s)
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 60 };
 	const double *here = interp_build_here(b);
 	const double r = pow(10, uniform(s, -0.5, 1)), t = uniform(s, 0, 6.28);
-	const struct interp_build_arc a = {
+	struct interp_build_arc a = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = here[0] + r * cos(t),
-		.centre_b_mm = here[1] + r * sin(t), .clockwise = rnd(s) % 2,
+		.centre_b_mm = here[1] + r * sin(t),
 	};
+	const bool clockwise = rnd(s) % 2;
 	const double to = uniform(s, 0, 6.28);
 	double end[INTERP_NAXES];
 	struct interp_diag d;
@@ -103,6 +105,7 @@ static inline void random_arc(struct interp_build *b, uint64_t *s)
 	end[0] = a.centre_a_mm + r * cos(to);
 	end[1] = a.centre_b_mm + r * sin(to);
 	end[INTERP_C] += rnd(s) % 2 ? uniform(s, -9, 9) : 0;
+	arc_turn(&a, b, end, clockwise);
 	assert_int_equal(interp_build_arc(b, end, &a, &w, &d), 0);
 }
 

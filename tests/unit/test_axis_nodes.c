@@ -86,9 +86,8 @@ static void random_slot(struct interp_build *b, uint64_t *s)
 	const double *here = interp_build_here(b);
 	struct interp_build_arc a = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
-		.clockwise = rnd(s) % 2,
 	};
-	const double side = a.clockwise ? -1 : 1;
+	const double side = rnd(s) % 2 ? -1 : 1;
 	double end[INTERP_NAXES];
 	struct interp_diag d;
 
@@ -100,6 +99,7 @@ static void random_slot(struct interp_build *b, uint64_t *s)
 	a.centre_b_mm = end[1] + side * r * cos(way);
 	end[0] = a.centre_a_mm + side * r * sin(way + side * sweep);
 	end[1] = a.centre_b_mm - side * r * cos(way + side * sweep);
+	a.sweep = side * sweep;
 	assert_int_equal(interp_build_arc(b, end, &a, &w, &d), 0);
 }
 

@@ -7,6 +7,7 @@
  */
 #include "nc_read.h"
 
+#include "interp/angle.h"
 #include "interp/compile.h"
 
 #define WALKED	20000u
@@ -188,8 +189,8 @@ static void so_are_two_contours(void **state)
 {
 	const double r_mm = 80000, end_mm[INTERP_NAXES] = { 0 };
 	const struct interp_build_contour circle[2] = {
-		{ .arc = true, .centre_mm = { r_mm, 0 } },
-		{ .arc = true, .centre_mm = { r_mm, 0 } },
+		{ .arc = true, .sweep = ANGLE_TURN, .centre_mm = { r_mm, 0 } },
+		{ .arc = true, .sweep = ANGLE_TURN, .centre_mm = { r_mm, 0 } },
 	};
 	const struct interp_build_word w = { .line = 5, .feed_mm_s = 1 };
 	struct nc_read n = nc_ready();

@@ -8,6 +8,7 @@
 #include "config.h"
 #include "axes/contouring.h"
 
+#include "interp/angle.h"
 #include "interp/axis_model.h"
 #include "interp/identify.h"
 
@@ -386,7 +387,8 @@ static void it_never_sends_an_axis_out_of_its_travel(void **state)
 static struct interp_build *onto_a_pair(void)
 {
 	const struct interp_build_contour c[2] = {
-		{ .arc = false }, { .arc = true, .centre_mm = { 0.05, 0 } }
+		{ .arc = false },
+		{ .arc = true, .sweep = ANGLE_TURN, .centre_mm = { 0.05, 0 } },
 	};
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 	struct interp_diag d;

@@ -6,6 +6,7 @@
  * refused.  Random texts of every dialect, and random arcs of thousands of
  * pulses, by every strategy: the travel is made as narrow as their walk.
  */
+#include "interp/angle.h"
 #include "random_compile.h"
 #include "seed.h"
 
@@ -214,7 +215,7 @@ static void a_huge_circle_takes_few_looks(void **st)
 		.machine = &k.m, .strategy = INTERP_SIMULTANEOUS,
 	};
 	const struct interp_build_arc arc = {
-		.axis_a = INTERP_X, .axis_b = INTERP_Y,
+		.axis_a = INTERP_X, .axis_b = INTERP_Y, .sweep = ANGLE_TURN,
 	};
 	const struct interp_build_word w = { .feed_mm_s = 1 };
 	const double there[INTERP_NAXES] = { HUGE_MM };

@@ -98,17 +98,17 @@ static struct interp_build *begin_by(enum interp_strategy how)
 /* Return: was it taken? */
 static bool try_one(const struct far *f, uint64_t *s)
 {
-	const struct interp_build_arc word = {
+	struct interp_build_arc word = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = f->centre[0] * 1e-3,
 		.centre_b_mm = f->centre[1] * 1e-3,
-		.clockwise = f->clockwise,
 	};
 	const double end[INTERP_NAXES] = { f->to[0] * 1e-3, f->to[1] * 1e-3 };
 	struct interp_build *b = begin_by(f->how);
 	struct interp_diag d = { 0 };
 	struct made m;
 
+	arc_turn(&word, b, end, f->clockwise);
 	if (interp_build_arc(b, end, &word, &help_word, &d) != 0) {
 		assert_true(d.found[0] && d.wanted[0]);
 		interp_build_destroy(b);

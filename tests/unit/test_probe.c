@@ -5,6 +5,7 @@
  * The work is made of walls at given places: there is contact where an axis is
  * at a wall or beyond it.
  */
+#include "arc_turn.h"
 #include "cycle_help.h"
 
 #include "path/probe_rest.h"
@@ -461,10 +462,9 @@ static void test_of_an_arc_the_farthest_place_counts(void **state)
 			const struct interp_build_word w = {
 				.line = 7, .rapid = true,
 			};
-			const struct interp_build_arc a = {
+			struct interp_build_arc a = {
 				.axis_a = INTERP_X, .axis_b = INTERP_Y,
 				.centre_a_mm = 91 + more, .centre_b_mm = 0,
-				.clockwise = clockwise,
 			};
 			const double end[INTERP_NAXES] = {
 				[INTERP_X] = 91 + more,
@@ -475,6 +475,7 @@ static void test_of_an_arc_the_farthest_place_counts(void **state)
 
 			x_by(b, -100, INTERP_SEG_PROBE);
 			xy_to(b, 91 + more, -end[INTERP_Y]);
+			arc_turn(&a, b, end, clockwise);
 			assert_int_equal(interp_build_arc(b, end, &a, &w, &d),
 					 0);
 			rest_fits_if(b, !more);

@@ -10,6 +10,7 @@
  * The longest segments cannot be walked.  There the places at both ends are
  * known, and each place sought is walked to from another place sought.
  */
+#include "interp/angle.h"
 #include "random_compile.h"
 #include "seed.h"
 
@@ -239,13 +240,13 @@ static int add_line(struct interp_build *b)
 /* A circle of several turns, or a helix. */
 static int add_circle(struct interp_build *b)
 {
-	const struct interp_build_arc a = {
+	struct interp_build_arc a = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = uniform(&seed, -20, 20),
 		.centre_b_mm = uniform(&seed, -20, 20),
-		.clockwise = rnd(&seed) % 2,
-		.turns = (uint32_t)(rnd(&seed) % 4),
 	};
+	const bool clockwise = rnd(&seed) % 2;
+	const double more = ANGLE_TURN * (double)(rnd(&seed) % 4);
 	const double *here = interp_build_here(b);
 	const double x = here[0] - a.centre_a_mm, y = here[1] - a.centre_b_mm;
 	const double turn = rnd(&seed) % 3 ? uniform(&seed, -3, 3) : 0;
@@ -257,6 +258,8 @@ static int add_circle(struct interp_build *b)
 	to[1] = a.centre_b_mm + x * sin(turn) + y * cos(turn);
 	if (rnd(&seed) % 2)
 		to[2] += uniform(&seed, -9, 9);
+	arc_turn(&a, b, to, clockwise);
+	a.sweep += a.sweep < 0 ? -more : more;
 	return interp_build_arc(b, to, &a, &help_word, &d);
 }
 
@@ -318,7 +321,7 @@ static int add_longest_circle(struct interp_build *b, enum interp_strategy s)
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = here[0] - uniform(&seed, r_mm / 2, r_mm),
 		.centre_b_mm = here[1] + uniform(&seed, r_mm / 2, r_mm),
-		.clockwise = rnd(&seed) % 2, .turns = 1,
+		.sweep = (rnd(&seed) % 2 ? -2 : 2) * ANGLE_TURN,
 	};
 	struct interp_diag d = { 0 };
 	double to[INTERP_NAXES];

@@ -3,6 +3,7 @@
  * test_stretch.c - a place where the axes allow little slows down that place,
  * and not the whole move
  */
+#include "arc_turn.h"
 #include "axis_track.h"
 
 #define CYCLES	200000
@@ -281,7 +282,7 @@ static void between_slow_nodes_it_stands_where_that_is_quicker(void **st)
 /* -- Tight arcs ----------------------------------------------------------- */
 
 static void arc_of(struct interp_build *b, double dx, double dy,
-		   const struct interp_build_arc *a)
+		   struct interp_build_arc a, bool clockwise)
 {
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 60 };
 	double end[INTERP_NAXES];
@@ -290,7 +291,8 @@ static void arc_of(struct interp_build *b, double dx, double dy,
 	memcpy(end, interp_build_here(b), sizeof(end));
 	end[INTERP_X] += dx;
 	end[INTERP_Y] += dy;
-	assert_int_equal(interp_build_arc(b, end, a, &w, &d), 0);
+	arc_turn(&a, b, end, clockwise);
+	assert_int_equal(interp_build_arc(b, end, &a, &w, &d), 0);
 }
 
 static void arc_by(struct interp_build *b, double dx, double dy, double i,
@@ -298,11 +300,11 @@ static void arc_by(struct interp_build *b, double dx, double dy, double i,
 {
 	const double *here = interp_build_here(b);
 
-	arc_of(b, dx, dy, &(struct interp_build_arc) {
+	arc_of(b, dx, dy, (struct interp_build_arc) {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = here[INTERP_X] + i,
 		.centre_b_mm = here[INTERP_Y] + j,
-	});
+	}, false);
 }
 
 static struct interp_build *begin_jerk(double j_mm_s3)
@@ -376,10 +378,10 @@ static void arcs_of_many_sizes_have_the_stands_that_pay(void **st)
 		const double d = (0.5 + 8 * fabs(sin(i * 1.7))) *
 				 (x > 0 ? -1 : 1);
 
-		arc_of(b, d, 0, &(struct interp_build_arc) {
+		arc_of(b, d, 0, (struct interp_build_arc) {
 			.axis_a = INTERP_X, .axis_b = INTERP_Y,
-			.centre_a_mm = x + d / 2, .clockwise = i % 2 == 0,
-		});
+			.centre_a_mm = x + d / 2,
+		}, i % 2 == 0);
 		x += d;
 	}
 	walk(finish(b), s);

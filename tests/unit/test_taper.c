@@ -29,6 +29,14 @@ static void place(const struct pair *p, const int at[2][2],
 	}
 }
 
+static double sweep_of(const struct pair *p, int i)
+{
+	return interp_build_sweep(
+		(double[]) { p->from[i][0] * PULSE, p->from[i][1] * PULSE },
+		(double[]) { p->to[i][0] * PULSE, p->to[i][1] * PULSE },
+		(double[]) { 0, 0 }, p->clockwise[i]);
+}
+
 static struct made make_pair(enum interp_strategy s, const struct pair *p)
 {
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
@@ -39,7 +47,7 @@ static struct made make_pair(enum interp_strategy s, const struct pair *p)
 
 	for (int i = 0; i < 2; i++)
 		c[i] = (struct interp_build_contour) {
-			.arc = p->arc[i], .clockwise = p->clockwise[i],
+			.arc = p->arc[i], .sweep = sweep_of(p, i),
 			.centre_mm = { p->centre[i][0] * PULSE,
 				       p->centre[i][1] * PULSE },
 		};

@@ -13,6 +13,7 @@
 
 #include <cmocka.h>
 
+#include "arc_turn.h"
 #include "interp/build.h"
 #include "interp/cursor.h"
 
@@ -70,12 +71,13 @@ static inline void line(struct interp_build *b, const double *end)
 static inline void arc(struct interp_build *b, const double *end, double ca,
 		       double cb, bool clockwise)
 {
-	const struct interp_build_arc a = {
+	struct interp_build_arc a = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
-		.centre_a_mm = ca, .centre_b_mm = cb, .clockwise = clockwise,
+		.centre_a_mm = ca, .centre_b_mm = cb,
 	};
 	struct interp_diag d = { 0 };
 
+	arc_turn(&a, b, end, clockwise);
 	if (interp_build_arc(b, end, &a, &help_word, &d) != 0 &&
 	    !strstr(d.found, "spiral"))
 		fail_msg("%s; %s", d.found, d.wanted);

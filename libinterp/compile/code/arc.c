@@ -200,7 +200,7 @@ static int refuse_radius(struct nc_reader *r, double radius, double half)
  * clockwise arc changes the side, and so does an arc longer than half a turn.
  */
 static int by_radius(struct nc_reader *r, const struct nc_plane *p,
-		     const double end_mm[INTERP_NAXES],
+		     const double end_mm[INTERP_NAXES], bool clockwise,
 		     struct interp_build_arc *arc)
 {
 	const double *here = nc_here(r);
@@ -225,7 +225,7 @@ static int by_radius(struct nc_reader *r, const struct nc_plane *p,
 		return refuse_radius(r, radius, half);
 	if (radius > half)
 		off = sqrt((radius - half) * (radius + half)) / chord;
-	if (arc->clockwise != (value < 0))
+	if (clockwise != (value < 0))
 		off = -off;
 	arc->centre_a_mm = here[p->a] + da / 2 - off * db;
 	arc->centre_b_mm = here[p->b] + db / 2 + off * da;
@@ -233,7 +233,7 @@ static int by_radius(struct nc_reader *r, const struct nc_plane *p,
 }
 
 static int centre(struct nc_reader *r, const struct nc_plane *p,
-		  const double end_mm[INTERP_NAXES],
+		  const double end_mm[INTERP_NAXES], bool clockwise,
 		  struct interp_build_arc *arc)
 {
 	if (!nc_has(r, NC_R))
@@ -241,7 +241,7 @@ static int centre(struct nc_reader *r, const struct nc_plane *p,
 	if (r->block.words & NC_CENTRE)
 		return nc_refuse(r, r->block.at[NC_R], p->centre,
 				 "R beside a centre");
-	return by_radius(r, p, end_mm, arc);
+	return by_radius(r, p, end_mm, clockwise, arc);
 }
 
 /* What the centre of the top's arc is counted from: as U V are, from that of
@@ -300,7 +300,6 @@ static int top(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		return 0;
 	}
 	c->arc = true;
-	c->clockwise = motion == 2;
 	for (int i = 0; i < 2; i++) {
 		const enum nc_slot slot = i ? NC_UJ : NC_UI;
 
@@ -315,6 +314,8 @@ static int top(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		  c->centre_mm[1] - here[INTERP_V]) < NOTHING_MM)
 		return nc_refuse_at(r, r->line, "I or J away from 0",
 				    "a top arc of radius 0");
+	c->sweep = interp_build_sweep(&here[INTERP_U], &end_mm[INTERP_U],
+				      c->centre_mm, motion == 2);
 	return check_top(r, end_mm, c, leans);
 }
 
@@ -332,14 +333,14 @@ static int go_round(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 		    const struct interp_build_arc *arc)
 {
 	const struct interp_build_contour bottom = {
-		.arc = true, .clockwise = arc->clockwise,
+		.arc = true, .sweep = arc->sweep,
 		.centre_mm = { arc->centre_a_mm, arc->centre_b_mm },
 	};
 
 	if (nc_has_guides(r) && arc->axis_a == INTERP_X &&
 	    (r->block.colon || (r->block.words & (NC_BIT(NC_U) | NC_BIT(NC_V) |
 				NC_BIT(NC_UI) | NC_BIT(NC_UJ)))))
-		return go_two(r, end_mm, arc->clockwise ? 2 : 3, &bottom);
+		return go_two(r, end_mm, arc->sweep < 0 ? 2 : 3, &bottom);
 	return contour_arc(&r->contour, end_mm, arc, &r->word, r->diag);
 }
 
@@ -355,11 +356,22 @@ int nc_line_two(struct nc_reader *r, const double end_mm[INTERP_NAXES])
 	return nc_placed(r, go_two(r, end_mm, 1, &bottom), end_mm);
 }
 
+static double sweep_of(const struct nc_reader *r, const struct nc_plane *p,
+		       const double end_mm[INTERP_NAXES],
+		       const struct interp_build_arc *arc, bool clockwise)
+{
+	const double from_mm[2] = { nc_here(r)[p->a], nc_here(r)[p->b] };
+	const double to_mm[2] = { end_mm[p->a], end_mm[p->b] };
+	const double centre_mm[2] = { arc->centre_a_mm, arc->centre_b_mm };
+
+	return interp_build_sweep(from_mm, to_mm, centre_mm, clockwise);
+}
+
 int nc_arc(struct nc_reader *r, bool clockwise)
 {
 	const struct nc_plane *p = &nc_planes[r->plane];
 	struct interp_build_arc arc = {
-		.axis_a = p->a, .axis_b = p->b, .clockwise = clockwise,
+		.axis_a = p->a, .axis_b = p->b,
 	};
 	double end_mm[INTERP_NAXES];
 	int err;
@@ -369,7 +381,8 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 				 "a plane of axes the machine has",
 				 "an arc in the plane %s", p->name);
 	nc_target(r, end_mm);
-	err = centre(r, p, end_mm, &arc);
+	err = centre(r, p, end_mm, clockwise, &arc);
+	arc.sweep = sweep_of(r, p, end_mm, &arc, clockwise);
 	if (!err)
 		err = nc_word(r, false, false);
 	if (!err)

@@ -52,14 +52,22 @@ static void number(struct words *w, char letter, double v)
 	     "0 " : s);
 }
 
-static void places(const struct iso_writer *o, struct words *w, uint32_t i,
+/* The axes of the mask @axes, from all. */
+static void places(struct words *w, const double mm[INTERP_NAXES],
 		   uint32_t axes)
 {
 	for (uint32_t a = 0; a < INTERP_NAXES; a++) {
 		if (axes & 1u << a)
-			number(w, INTERP_AXIS_LETTERS[a], emit_mm(o->p, a,
-			       emit_node_sub(o->p, (size_t)i + 1, a)));
+			number(w, INTERP_AXIS_LETTERS[a], mm[a]);
 	}
+}
+
+/* Where segment @i begins; that is where the one before it ends. */
+static void begin_mm(const struct iso_writer *o, uint32_t i,
+		     double ret[INTERP_NAXES])
+{
+	for (uint32_t a = 0; a < INTERP_NAXES; a++)
+		ret[a] = emit_mm(o->p, a, emit_node_sub(o->p, i, a));
 }
 
 static void feed(struct iso_writer *o, struct words *w,
@@ -81,41 +89,88 @@ static const struct {
 	{ INTERP_Y, INTERP_Z, 'J', 'K' },
 };
 
-static void centre(const struct iso_writer *o, struct words *w, uint32_t i,
-		   const struct interp_arc *a)
-{
-	const double a0 = emit_mm(o->p, a->axis_a,
-				  emit_node_sub(o->p, i, a->axis_a));
-	const double b0 = emit_mm(o->p, a->axis_b,
-				  emit_node_sub(o->p, i, a->axis_b));
+/* Ends of an arc that are nearer to each other: a text may not tell any more
+ * whether it goes round or nowhere. */
+#define NEAR_MM		1e-5
 
-	number(w, planes[o->plane].i, a->a_mm - a0);
-	number(w, planes[o->plane].j, a->b_mm - b0);
+static double gap_mm(const struct interp_arc *a,
+		     const double from_mm[INTERP_NAXES],
+		     const double to_mm[INTERP_NAXES])
+{
+	return hypot(to_mm[a->axis_a] - from_mm[a->axis_a],
+		     to_mm[a->axis_b] - from_mm[a->axis_b]);
+}
+
+static int plane_of(const struct interp_arc *a)
+{
+	int plane = 0;
+
+	while (plane < 3 && (planes[plane].a != a->axis_a ||
+			     planes[plane].b != a->axis_b))
+		plane++;
+	return plane;
+}
+
+static void arc_part(struct words *w, const struct interp_arc *a,
+		     const double from_mm[INTERP_NAXES],
+		     const double to_mm[INTERP_NAXES], uint32_t axes)
+{
+	const int plane = plane_of(a);
+
+	word(w, a->sweep < 0 ? "G2" : "G3");
+	places(w, to_mm, axes);
+	number(w, planes[plane].i, a->a_mm - from_mm[a->axis_a]);
+	number(w, planes[plane].j, a->b_mm - from_mm[a->axis_b]);
+}
+
+/* Half of its turn, and half of the way of all other axes. */
+static void middle_mm(const struct interp_arc *a,
+		      const double from_mm[INTERP_NAXES],
+		      const double to_mm[INTERP_NAXES],
+		      double ret[INTERP_NAXES])
+{
+	const double r_mm = a->r_mm + a->dr_mm / 2;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret[i] = (from_mm[i] + to_mm[i]) / 2;
+	ret[a->axis_a] = a->a_mm + r_mm * cos(a->theta + a->sweep / 2);
+	ret[a->axis_b] = a->b_mm + r_mm * sin(a->theta + a->sweep / 2);
 }
 
 static int arc(struct iso_writer *o, struct words *w, uint32_t i)
 {
 	const struct interp_seg *seg = &o->p->segs[i];
 	const struct interp_arc *a = &o->p->arcs[seg->arg];
-	uint8_t plane = 0;
+	const uint32_t axes = emit_moved(o->p, i) | 1u << a->axis_a |
+			      1u << a->axis_b;
+	const double turns = fabs(a->sweep) / ANGLE_TURN;
+	const int plane = plane_of(a);
+	double at[3][INTERP_NAXES], gap;
 
-	while (plane < 3 && (planes[plane].a != a->axis_a ||
-			     planes[plane].b != a->axis_b))
-		plane++;
 	if (plane == 3)
 		return emit_refuse(o->diag, seg->line, "arcs in XY, ZX or YZ",
 				   "an arc in another plane");
-	if (fabs(a->sweep) > ANGLE_TURN * (1 + 1e-9))
-		return emit_refuse(o->diag, seg->line, "arcs of up to a turn",
-				   "an arc of %.2f turns",
-				   fabs(a->sweep) / ANGLE_TURN);
+	begin_mm(o, i, at[0]);
+	begin_mm(o, i + 1, at[2]);
+	gap = gap_mm(a, at[0], at[2]);
+	if (turns >= 2)
+		return emit_refuse(o->diag, seg->line, "arcs of less than two "
+				   "turns", "an arc of %.2f turns", turns);
 	if (plane != o->plane)
-		word(w, "G%u ", 17u + plane);
-	o->plane = plane;
-	word(w, a->sweep < 0 ? "G2" : "G3");
-	places(o, w, i, emit_moved(o->p, i) | 1u << a->axis_a |
-	       1u << a->axis_b);
-	centre(o, w, i, a);
+		word(w, "G%u ", 17u + (unsigned int)plane);
+	o->plane = (uint8_t)plane;
+	if (gap < NEAR_MM && turns < 0.5) {
+		word(w, "G1");
+		places(w, at[2], axes);
+	} else if (turns > 1 || (gap < NEAR_MM && gap > 0)) {
+		middle_mm(a, at[0], at[2], at[1]);
+		arc_part(w, a, at[0], at[1], axes);
+		feed(o, w, seg);
+		word(w, "\n");
+		arc_part(w, a, at[1], at[2], axes);
+	} else {
+		arc_part(w, a, at[0], at[2], axes);
+	}
 	feed(o, w, seg);
 	return 0;
 }
@@ -154,6 +209,7 @@ static int words_of(struct iso_writer *o, struct words *w, uint32_t i)
 {
 	const struct interp_seg *seg = &o->p->segs[i];
 	const int err = emit_refuse_sensed(o->diag, seg);
+	double end_mm[INTERP_NAXES];
 
 	if (err)
 		return err;
@@ -161,7 +217,8 @@ static int words_of(struct iso_writer *o, struct words *w, uint32_t i)
 	switch (seg->kind) {
 	case INTERP_LINE:
 		word(w, seg->flags & INTERP_SEG_RAPID ? "G0" : "G1");
-		places(o, w, i, emit_moved(o->p, i));
+		begin_mm(o, i + 1, end_mm);
+		places(w, end_mm, emit_moved(o->p, i));
 		if (!(seg->flags & INTERP_SEG_RAPID))
 			feed(o, w, seg);
 		return 0;

@@ -150,7 +150,11 @@ static int build_arc(struct threeb_reader *r, const struct threeb_record *c,
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = r->start_mm[INTERP_X] + cx * r->unit_mm,
 		.centre_b_mm = r->start_mm[INTERP_Y] + cy * r->unit_mm,
-		.clockwise = a->clockwise,
+		.sweep = interp_build_sweep((double[]) { (double)a->x,
+							 (double)a->y },
+					    (double[]) { (double)e->x,
+							 (double)e->y },
+					    (double[]) { 0, 0 }, a->clockwise),
 	};
 	double end_mm[INTERP_NAXES];
 	int rc;

@@ -266,8 +266,7 @@ static double sweep_of(const struct threeb_writer *w,
 	const double to = atan2((double)want->end.y - want->cy,
 				(double)want->end.x - want->cx);
 
-	return to - from +
-	       ANGLE_TURN * round((near - (to - from)) / ANGLE_TURN);
+	return angle_nearest(to - from, near);
 }
 
 static int arc(struct threeb_writer *w, uint32_t i)

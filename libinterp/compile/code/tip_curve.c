@@ -9,6 +9,7 @@
 #include "code/nurbs_words.h"
 #include "code/tip_way.h"
 #include "curve/span.h"
+#include "interp/angle.h"
 #include "interp/nurbs_length.h"
 #include "path/build_arc.h"
 #include "path/build_curve.h"
@@ -98,9 +99,10 @@ int nc_tip_turn(struct nc_reader *r, const double end_mm[INTERP_NAXES])
 
 /* If the axes put the tip somewhere, no program can name the place to the last
  * digit.  An arc that ends there is a full circle all the same. */
-static void close_circle(const struct nc_reader *r, struct build_arc *p)
+static void close_circle(const struct nc_reader *r, struct build_arc *p,
+			 struct interp_build_arc *word)
 {
-	const int plane[] = { (int)p->word->axis_a, (int)p->word->axis_b };
+	const int plane[] = { (int)word->axis_a, (int)word->axis_b };
 
 	for (int i = 0; i < 2; i++) {
 		const double off = p->to_mm[plane[i]] - p->from_mm[plane[i]];
@@ -111,28 +113,25 @@ static void close_circle(const struct nc_reader *r, struct build_arc *p)
 	}
 	for (int i = 0; i < 2; i++)
 		p->from_mm[plane[i]] = p->to_mm[plane[i]];
+	word->sweep = copysign(ANGLE_TURN, word->sweep);
 }
 
 int nc_tip_arc(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	       const struct interp_build_arc *arc)
 {
 	const struct interp_build_options o = { .machine = r->o->machine };
-	struct build_arc plan = { .o = &o, .word = arc };
+	struct interp_build_arc word = *arc;
+	struct build_arc plan = { .o = &o, .word = &word };
 	struct nc_tip_way w = { .at = arc_at };
 	double begin[INTERP_NAXES];
 	struct ends e;
-	int rc;
 
 	memcpy(e.from_mm, r->tool.here_mm, sizeof(e.from_mm));
 	memcpy(e.to_mm, end_mm, sizeof(e.to_mm));
 	memcpy(plan.from_mm, e.from_mm, sizeof(plan.from_mm));
 	memcpy(plan.to_mm, e.to_mm, sizeof(plan.to_mm));
-	close_circle(r, &plan);
-	rc = build_arc_shape(&plan, r->diag);
-	if (rc) {
-		r->diag->line = r->line;
-		return nc_placed(r, rc, end_mm);
-	}
+	close_circle(r, &plan, &word);
+	build_arc_shape(&plan);
 	e.arc = plan.arc;
 	w.of = &e;
 	w.turn_deg = turn_deg(&e);

@@ -238,6 +238,7 @@ static int turn_arc(struct walk *w, const struct round *q)
 		.axis_a = w->o->a, .axis_b = w->o->b,
 		.centre_a_mm = w->o->start_mm[w->o->a],
 		.centre_b_mm = w->o->start_mm[w->o->b],
+		.sweep = ANGLE_TURN,
 	};
 	double end_mm[INTERP_NAXES];
 

@@ -32,9 +32,14 @@
 /* A line that is so near to an arc may stand for it. */
 #define STRAIGHT_PULSES	2.0
 
-/* If the angles of both ends differ by less than this part of a pulse, they are
- * equal. */
-#define SAME_ANGLE	1e-5
+/* Places that are nearer to each other, in pulses, are one. */
+#define SAME_PLACE	1e-5
+
+/* No text names two places that are nearer. */
+#define SAME_TEXT_MM	1e-6
+
+/* A full circle, and what rounding adds to it. */
+#define WHOLE_TURN	(ANGLE_TURN * (1 + 1e-9))
 
 /* A lattice point of an arc is no farther beside it, beside the tolerance: the
  * radii may differ, and so may a centre and the nearest lattice point. */
@@ -46,28 +51,22 @@ static const struct interp_axis_limits *limits(const struct build_arc *p,
 	return &p->o->machine->axis[a];
 }
 
-/* The angle from theta0 on to theta1 in the direction of the arc; whole turns
- * are added. */
-static double sweep_of(const struct build_arc *p, double theta0, double theta1)
+double interp_build_sweep(const double from_mm[2], const double to_mm[2],
+			  const double centre_mm[2], bool clockwise)
 {
-	const enum interp_axis a = p->word->axis_a, b = p->word->axis_b;
-	const double pulse = limits(p, a)->pulse_mm;
-	const double same = SAME_ANGLE * pulse / p->arc.r_mm;
-	double sweep = theta1 - theta0;
+	const double a0 = from_mm[0] - centre_mm[0];
+	const double b0 = from_mm[1] - centre_mm[1];
+	const double a1 = to_mm[0] - centre_mm[0];
+	const double b1 = to_mm[1] - centre_mm[1];
+	const double by = atan2(b1, a1) - atan2(b0, a0);
+	const double sweep = angle_ahead(clockwise ? -by : by);
+	const bool whole = fabs(angle_nearest(by, 0)) * hypot(a0, b0) <
+			   SAME_TEXT_MM;
 
-	if (p->from_mm[a] == p->to_mm[a] && p->from_mm[b] == p->to_mm[b])
-		sweep = 0;
-	if (p->word->clockwise) {
-		while (sweep > -same)
-			sweep -= ANGLE_TURN;
-		return sweep - ANGLE_TURN * p->word->turns;
-	}
-	while (sweep < same)
-		sweep += ANGLE_TURN;
-	return sweep + ANGLE_TURN * p->word->turns;
+	return (clockwise ? -1 : 1) * (whole ? ANGLE_TURN : sweep);
 }
 
-int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
+void build_arc_shape(struct build_arc *p)
 {
 	const struct interp_build_arc *w = p->word;
 	const double a0 = p->from_mm[w->axis_a] - w->centre_a_mm;
@@ -75,20 +74,13 @@ int build_arc_shape(struct build_arc *p, struct interp_diag *diag)
 	const double a1 = p->to_mm[w->axis_a] - w->centre_a_mm;
 	const double b1 = p->to_mm[w->axis_b] - w->centre_b_mm;
 	const double r0 = hypot(a0, b0), r1 = hypot(a1, b1);
-	const double pulse = larger(limits(p, w->axis_a)->pulse_mm,
-				    limits(p, w->axis_b)->pulse_mm);
 
-	if (r0 < pulse / 2) {
-		return interp_diag_say(diag, "an arc of radius %.6f mm; a "
-				       "radius of half a pulse or more", r0);
-	}
 	p->arc = (struct interp_arc) {
 		.a_mm = w->centre_a_mm, .b_mm = w->centre_b_mm,
 		.r_mm = r0, .dr_mm = r1 - r0, .theta = atan2(b0, a0),
 		.axis_a = (uint8_t)w->axis_a, .axis_b = (uint8_t)w->axis_b,
 	};
-	p->arc.sweep = sweep_of(p, p->arc.theta, atan2(b1, a1));
-	return 0;
+	p->arc.sweep = angle_nearest(atan2(b1, a1) - p->arc.theta, w->sweep);
 }
 
 /* Does the arc pass the angle @quarter * 90 degrees? */
@@ -340,9 +332,11 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	if (err < 0 || p->walks->again.counts)
 		return err;
 	arc_ends(p, start, end);
-	/* There is nothing to go around, or the helix of a dda has no way
-	 * around it. */
-	if (start[0] == 0 && start[1] == 0) {
+	/* There is nothing to go around, it goes nowhere, or the helix of a dda
+	 * has no way around it. */
+	if ((start[0] == 0 && start[1] == 0) ||
+	    (start[0] == end[0] && start[1] == end[1] &&
+	     fabs(arc->sweep) < ANGLE_TURN / 2)) {
 		p->straight = true;
 		return 0;
 	}
@@ -388,6 +382,17 @@ static bool is_steep(const struct interp_arc *arc)
 	return off > SPIRAL_SHARE * least || off > fabs(arc->sweep) * least;
 }
 
+/* It goes nowhere, or stays within half a pulse of its centre. */
+static bool is_nothing(const struct build_arc *p)
+{
+	const struct interp_arc *arc = &p->arc;
+	const double most = larger(arc->r_mm, arc->r_mm + arc->dr_mm);
+	const double pulse = pulse_of(p);
+
+	return most < pulse / 2 ||
+	       fabs(arc->sweep) * most < SAME_PLACE * pulse;
+}
+
 /* Is a line as near to it as its radii are to each other? */
 static bool is_straight(const struct build_arc *p)
 {
@@ -417,7 +422,8 @@ enum build_arc_ends build_arc_even(struct build_arc *p,
 	const double r = arc->r_mm + arc->dr_mm / 2;
 	double chord, by;
 
-	if (p->word->turns || is_even(p) || is_straight(p))
+	if (fabs(arc->sweep) > WHOLE_TURN || is_nothing(p) || is_even(p) ||
+	    is_straight(p))
 		return BUILD_ARC_AS_IT_IS;
 	chord = hypot(a, b);
 	by = arc->dr_mm * r / chord;
@@ -453,7 +459,7 @@ int build_arc_plan(struct build_arc *p, struct interp_diag *diag)
 
 	if (err < 0)
 		return err;
-	p->straight = is_steep(&p->arc);
+	p->straight = is_nothing(p) || is_steep(&p->arc);
 	if (p->straight)
 		return 0;
 	err = settle_far(p, diag);

@@ -34,10 +34,9 @@ struct build_arc {
  * build_arc_shape() - fill the arc with centre, radii and angles, from @p's
  * word and ends.
  *
- * Of o only the machine is used.  Return: 0, or -EINVAL with @diag's found and
- * wanted if the radius is 0.
+ * Of o only the machine is used.
  */
-int build_arc_shape(struct build_arc *p, struct interp_diag *diag);
+void build_arc_shape(struct build_arc *p);
 
 enum build_arc_ends {
 	BUILD_ARC_AS_IT_IS,		/* on one already, or a line */

@@ -65,16 +65,17 @@ static int add_halves(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      const struct interp_build_word *w,
 		      struct interp_diag *diag)
 {
-	const struct interp_build_arc *a = p->word;
+	struct interp_build_arc half = *p->word;
 	double half_mm[INTERP_NAXES];
 	int err;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		half_mm[i] = (interp_build_here(b)[i] + end_mm[i]) / 2;
-	half_mm[a->axis_a] = p->mid_mm[0];
-	half_mm[a->axis_b] = p->mid_mm[1];
-	err = interp_build_arc(b, half_mm, a, w, diag);
-	return err ? err : interp_build_arc(b, end_mm, a, w, diag);
+	half_mm[half.axis_a] = p->mid_mm[0];
+	half_mm[half.axis_b] = p->mid_mm[1];
+	half.sweep /= 2;
+	err = interp_build_arc(b, half_mm, &half, w, diag);
+	return err ? err : interp_build_arc(b, end_mm, &half, w, diag);
 }
 
 int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
@@ -100,20 +101,18 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	if (!pulse_strategy(b->o.strategy)->at_once)
 		plan.way = build_way_to(b, to, &m);
 	plan.way.except = plane;
-	err = build_arc_shape(&plan, diag);
-	if (err < 0)
-		return err;
+	build_arc_shape(&plan);
 	switch (build_arc_even(&plan, &moved)) {
 	case BUILD_ARC_HALVES:
 		return add_halves(b, end_mm, &plan, w, diag);
 	case BUILD_ARC_MOVED:
 		plan.word = &moved;
-		err = build_arc_shape(&plan, diag);
+		build_arc_shape(&plan);
 		break;
 	case BUILD_ARC_AS_IT_IS:
 		break;
 	}
-	err = err < 0 ? err : build_arc_plan(&plan, diag);
+	err = build_arc_plan(&plan, diag);
 	if (err < 0)
 		return err;
 	if (plan.straight)

@@ -89,7 +89,7 @@ static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 	const struct interp_build_arc word = {
 		.axis_a = plane[i][0], .axis_b = plane[i][1],
 		.centre_a_mm = k->centre_mm[0], .centre_b_mm = k->centre_mm[1],
-		.clockwise = k->clockwise,
+		.sweep = k->sweep,
 	};
 	const struct interp_build_options o = {
 		.machine = p->machine,
@@ -109,9 +109,8 @@ static int side_arc(const struct build_pair *p, int i, struct build_arc *plan,
 		plan->way.to[a] = p->to[a];
 		plan->way.except |= 1u << a;
 	}
-	err = build_arc_shape(plan, diag);
-	if (err == 0)
-		err = build_arc_plan(plan, diag);
+	build_arc_shape(plan);
+	err = build_arc_plan(plan, diag);
 	plan->word = NULL;
 	plan->o = NULL;
 	return err;
@@ -158,11 +157,6 @@ struct follow {
 	int64_t total[2];		/* measures */
 };
 
-static double wrapped(double angle)
-{
-	return angle - ANGLE_TURN * floor(angle / ANGLE_TURN + 0.5);
-}
-
 /* sigma, or 0 if the two must go by length. */
 static int follow_sign(const struct build_pair *p)
 {
@@ -171,7 +165,7 @@ static int follow_sign(const struct build_pair *p)
 	const double pulse = p->machine->axis[INTERP_X].pulse_mm;
 	const double r = fmin(a->r_mm, b->r_mm) / pulse;
 	const double same = fmin(SAME_PULSES / r, SAME_MAX);
-	const double phase = fabs(wrapped(b->theta - a->theta));
+	const double phase = fabs(angle_nearest(b->theta - a->theta, 0));
 	const int sigma = a->sweep > 0 ? 1 : -1;
 
 	if (!(r > 0) || a->sweep * b->sweep < 0 ||

@@ -94,7 +94,7 @@ static int pair_alone(struct interp_build *b, const struct build_pair *p,
 		.axis_a = i ? INTERP_U : INTERP_X,
 		.axis_b = i ? INTERP_V : INTERP_Y,
 		.centre_a_mm = c[i].centre_mm[0],
-		.centre_b_mm = c[i].centre_mm[1], .clockwise = c[i].clockwise,
+		.centre_b_mm = c[i].centre_mm[1], .sweep = c[i].sweep,
 	};
 	const bool other = i == 0 && (p->moved & ~XY || c[1].arc);
 

@@ -302,9 +302,9 @@ static int take_arc(struct contour *k, struct contour_motion *m,
 	const struct vec lean = { m->c[1].from.x - m->c[0].from.x,
 				  m->c[1].from.y - m->c[0].from.y };
 
-	m->c[0] = curve_arc(m->c[0].from, m->c[0].to, centre, arc->clockwise);
+	m->c[0] = curve_arc(m->c[0].from, m->c[0].to, centre, arc->sweep);
 	m->c[1] = curve_arc(m->c[1].from, m->c[1].to, vec_add(centre, 1, lean),
-			    arc->clockwise);
+			    arc->sweep);
 	return take_or_stay(k, m, diag);
 }
 
@@ -322,7 +322,7 @@ int contour_arc(struct contour *k, const double end_mm[INTERP_NAXES],
 		stand(k, end_mm);
 		return err;
 	}
-	if (arc->axis_a != INTERP_X || arc->turns)
+	if (arc->axis_a != INTERP_X)
 		return contour_refuse_plane(w, diag);
 	motion_init(k, &m, end_mm, w);
 	return take_arc(k, &m, arc, diag);
@@ -341,7 +341,7 @@ int contour_two(struct contour *k, const double end_mm[INTERP_NAXES],
 
 		if (c[p].arc)
 			m.c[p] = curve_arc(m.c[p].from, m.c[p].to, centre,
-					   c[p].clockwise);
+					   c[p].sweep);
 	}
 	return take_or_stay(k, &m, diag);
 }

@@ -54,7 +54,7 @@ static struct curve through(struct vec a, struct vec m, struct vec b)
 		return curve_line(a, b);
 	centre.x = a.x + (by * m2 - my * b2) / (2 * cross);
 	centre.y = a.y + (mx * b2 - bx * m2) / (2 * cross);
-	return curve_arc(a, b, centre, cross < 0);
+	return curve_round(a, b, centre, cross < 0);
 }
 
 static bool is_near(struct cutter *k, const struct curve *c, double u0,
@@ -78,7 +78,7 @@ static int lay(struct cutter *k, const struct curve *c)
 	const struct interp_build_arc arc = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = c->centre.x, .centre_b_mm = c->centre.y,
-		.clockwise = c->sweep < 0,
+		.sweep = c->sweep,
 	};
 	double end[INTERP_NAXES];
 

@@ -21,30 +21,31 @@ struct curve curve_line(struct vec from, struct vec to)
 	return (struct curve) { .from = from, .to = to };
 }
 
-/* @angle in [0, one turn). */
-static double ahead(double angle)
+static double angle_of(struct vec at, struct vec centre)
 {
-	return angle - ANGLE_TURN * floor(angle / ANGLE_TURN);
+	return atan2(at.y - centre.y, at.x - centre.x);
 }
 
 struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
-		       bool clockwise)
+		       double sweep)
 {
 	struct curve c = {
 		.arc = true, .from = from, .to = to, .centre = centre,
 		.r = curve_distance(centre, from),
-		.theta = atan2(from.y - centre.y, from.x - centre.x),
+		.theta = angle_of(from, centre),
 	};
-	const double end = atan2(to.y - centre.y, to.x - centre.x);
-	const double sweep = clockwise ? ahead(c.theta - end) :
-					 ahead(end - c.theta);
-	const bool whole = curve_distance(from, to) < CURVE_SAME_MM ||
-			   sweep * c.r < CURVE_SAME_MM;
 
-	c.sweep = whole ? ANGLE_TURN : sweep;
-	if (clockwise)
-		c.sweep = -c.sweep;
+	c.sweep = angle_nearest(angle_of(to, centre) - c.theta, sweep);
 	return c;
+}
+
+struct curve curve_round(struct vec from, struct vec to, struct vec centre,
+			 bool clockwise)
+{
+	const double by = angle_of(to, centre) - angle_of(from, centre);
+
+	return curve_arc(from, to, centre, clockwise ? -angle_ahead(-by) :
+						       angle_ahead(by));
 }
 
 /* A centre written to a micrometre is not as far from the one end as from the
@@ -58,7 +59,7 @@ struct curve curve_evened(const struct curve *c)
 		return *c;
 	return curve_arc(c->from, c->to,
 			 vec_add(c->centre, curve_uneven(c) / len, chord),
-			 c->sweep < 0);
+			 c->sweep);
 }
 
 double curve_uneven(const struct curve *c)
@@ -85,8 +86,8 @@ void curve_halved(const struct curve *c, struct curve ret[2])
 		return;
 	at = vec_add(c->centre, (c->r + r1) / (2 * c->r),
 		     vec_add(mid, -1, c->centre));
-	ret[0] = curve_arc(c->from, at, c->centre, c->sweep < 0);
-	ret[1] = curve_arc(at, c->to, c->centre, c->sweep < 0);
+	ret[0] = curve_arc(c->from, at, c->centre, c->sweep / 2);
+	ret[1] = curve_arc(at, c->to, c->centre, c->sweep / 2);
 }
 
 double curve_length(const struct curve *c)
@@ -230,7 +231,7 @@ bool curve_meet(const struct curve *a, const struct curve *b, struct vec near,
 static double past(const struct curve *c, double theta, struct vec at)
 {
 	const double by = atan2(at.y - c->centre.y, at.x - c->centre.x) - theta;
-	const double near = by - ANGLE_TURN * floor(by / ANGLE_TURN + 0.5);
+	const double near = angle_nearest(by, 0);
 
 	return c->sweep < 0 ? -near : near;
 }

@@ -58,9 +58,14 @@ static inline double curve_max(double a, double b)
 /** curve_line() - make a straight line. */
 struct curve curve_line(struct vec from, struct vec to);
 
-/** curve_arc() - make an arc; equal ends make a full circle. */
+/** curve_arc() - make an arc that turns by nearly @sweep radians: by so much
+ *  that it comes to @to. */
 struct curve curve_arc(struct vec from, struct vec to, struct vec centre,
-		       bool clockwise);
+		       double sweep);
+
+/** curve_round() - make an arc of less than a turn. */
+struct curve curve_round(struct vec from, struct vec to, struct vec centre,
+			 bool clockwise);
 
 /** curve_evened() - an arc with both ends on its circle; a line as it is. */
 struct curve curve_evened(const struct curve *c);

@@ -123,7 +123,7 @@ static bool fit(const struct face_from *from, uint32_t i, struct curve *ret)
 	if (!curve_meet(&beside[0], &beside[1], c->centre, &centre))
 		return false;
 	*ret = curve_arc(foot_on(&side[0], centre), foot_on(&side[1], centre),
-			 centre, c->sweep < 0);
+			 centre, c->sweep);
 	return fabs(ret->sweep - c->sweep) < 0.2;
 }
 

@@ -181,7 +181,7 @@ static int lay_round(struct mover *k, const struct corner *c,
 	const struct vec p = k->w.elem[c->a].c.to, q = b->c.from;
 	const struct vec from = vec_add(c->at, r, c->left[0]);
 	const struct vec to = vec_add(c->at, r, c->left[1]);
-	const struct curve round = curve_arc(from, to, c->at, r > 0);
+	const struct curve round = curve_round(from, to, c->at, r > 0);
 	const struct curve step[2] = { curve_line(p, from),
 				       curve_line(to, q) };
 	const struct curve straight = curve_line(p, q);

@@ -21,7 +21,6 @@
 
 #define CHORDS_MAX	20000.0
 #define TILT_SAMPLES	16		/* along an arc */
-#define LEAST_PULSES	1.5		/* of a smaller arc is made a line */
 
 static double share_at(const struct interp_wire *w, double z_mm)
 {
@@ -144,7 +143,7 @@ static int put(const struct cut *k, const struct interp_build_contour two[2])
 		const struct vec centre = { two[i].centre_mm[0],
 					    two[i].centre_mm[1] };
 		const struct curve way = two[i].arc ?
-			curve_arc(from, at, centre, two[i].clockwise) :
+			curve_arc(from, at, centre, two[i].sweep) :
 			curve_line(from, at);
 
 		end[x] = at.x;
@@ -202,8 +201,8 @@ static int cut_arcs(const struct cut *k)
 		const struct vec at = guide_at(m, centre[0], centre[1]);
 
 		two[i] = (struct interp_build_contour) {
-			.arc = cabs(r) > LEAST_PULSES * k->g->pulse_mm,
-			.clockwise = sweep < 0,
+			.arc = cabs(r) > CURVE_SAME_MM,
+			.sweep = sweep,
 			.centre_mm = { at.x, at.y },
 		};
 	}
@@ -223,9 +222,8 @@ static int cut_direct(const struct cut *k)
 
 	for (int i = 0; i < 2; i++)
 		two[i] = (struct interp_build_contour) {
-			.arc = k->c[i].arc &&
-			       k->c[i].r > LEAST_PULSES * k->g->pulse_mm,
-			.clockwise = k->c[i].sweep < 0,
+			.arc = k->c[i].arc && k->c[i].r > CURVE_SAME_MM,
+			.sweep = k->c[i].sweep,
 			.centre_mm = { k->c[i].centre.x, k->c[i].centre.y },
 		};
 	return put(k, two);
@@ -284,7 +282,7 @@ static int cut_bottom(const struct cut *k)
 	const struct interp_build_arc arc = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y,
 		.centre_a_mm = c->centre.x, .centre_b_mm = c->centre.y,
-		.clockwise = c->sweep < 0,
+		.sweep = c->sweep,
 	};
 	double end[INTERP_NAXES];
 
@@ -292,10 +290,7 @@ static int cut_bottom(const struct cut *k)
 	memcpy(end, k->end_mm, sizeof(end));
 	end[INTERP_X] = c->to.x;
 	end[INTERP_Y] = c->to.y;
-	/* The builder makes no circle of half a pulse or less, and takes an arc
-	 * whose ends are one for a whole turn. */
-	return c->arc && c->r > 0.51 * k->g->pulse_mm &&
-	       curve_length(c) > k->g->pulse_mm ?
+	return c->arc ?
 	       interp_build_arc(k->g->build, end, &arc, k->w, k->diag) :
 	       interp_build_line(k->g->build, end, k->w, k->diag);
 }

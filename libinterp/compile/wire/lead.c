@@ -9,8 +9,6 @@
  */
 #include "wire/track.h"
 
-/* The arc is made of two, because rounding its ends must not make a whole turn
- * of nothing, nor nothing of a whole turn. */
 uint32_t lead_size(const struct track_lead *l)
 {
 	return !l->there ? 0 : l->round ? LEAD_PARTS : 1;
@@ -56,8 +54,7 @@ static bool lay_in(const struct track_lead *l, struct curve c, struct vec at,
 		return true;
 	ret[0] = curve_distance(l->far, c.from) < CURVE_SAME_MM ?
 		 dot(c.from) : curve_line(l->far, c.from);
-	ret[1] = curve_part(&c, 0, 0.5);
-	ret[2] = curve_part(&c, 0.5, 1);
+	ret[1] = c;
 	return true;
 }
 

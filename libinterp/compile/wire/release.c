@@ -26,16 +26,6 @@ struct step {
 	struct interp_diag *diag;
 };
 
-/* Rounded to pulses, its ends may be one, or the one behind the other: they do
- * not tell any more whether it goes round or nowhere. */
-static bool is_hardly_open(const struct step *s, const struct curve *c)
-{
-	const double chord = curve_distance(c->from, c->to);
-
-	return c->arc && fabs(c->sweep) > 3 * ANGLE_RIGHT && chord > 0 &&
-	       chord < 2 * s->k->guides.pulse_mm;
-}
-
 /* Share @t0 to @t1 of it. */
 static int cut_part(const struct step *s, double t0, double t1,
 		    const struct interp_build_word *w)
@@ -46,10 +36,6 @@ static int cut_part(const struct step *s, double t0, double t1,
 	double end_mm[INTERP_NAXES];
 	int err;
 
-	if (is_hardly_open(s, &part[0]) || is_hardly_open(s, &part[1])) {
-		err = cut_part(s, t0, (t0 + t1) / 2, w);
-		return err ? err : cut_part(s, (t0 + t1) / 2, t1, w);
-	}
 	for (int i = 0; i < INTERP_NAXES; i++)
 		end_mm[i] = t >= 1 ? s->m->end_mm[i] : s->m->from_mm[i] +
 			    t * (s->m->end_mm[i] - s->m->from_mm[i]);

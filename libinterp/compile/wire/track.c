@@ -98,8 +98,8 @@ static int lay_round(struct track_work *w, const struct corner *k,
 	const struct vec way = curve_way(&q->c, false);
 	const struct vec at = vec_add(k->at, k->da,
 				      (struct vec) { -way.y, way.x });
-	const struct curve round = curve_arc(w->elem[k->a].c.to, at, k->at,
-					     k->da > 0);
+	const struct curve round = curve_round(w->elem[k->a].c.to, at, k->at,
+					       k->da > 0);
 	const struct curve step = curve_line(at, b->c.from);
 	const int err = lay_fill(w, k, &round, false);
 

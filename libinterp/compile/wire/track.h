@@ -135,7 +135,7 @@ struct track_work {
 					 * moved: face_move.h */
 };
 
-#define LEAD_PARTS	3u
+#define LEAD_PARTS	2u
 
 /** lead_size() - how many curves a lead is made of: 0, 1 or LEAD_PARTS. */
 uint32_t lead_size(const struct track_lead *l);

@@ -82,15 +82,30 @@ struct interp_build_word {
 					 * nothing given */
 };
 
-/* An arc as a reader knows it: the centre, the way round, the full turns. */
+/*
+ * An arc as a reader knows it.
+ *
+ * Rounded to pulses, both ends may become one place, or each the other: then
+ * they do not tell whether the arc goes round or nowhere.  So it says itself
+ * how far it turns.  The builder takes the turn between the rounded ends that
+ * is nearest to it.
+ */
 struct interp_build_arc {
-	enum interp_axis axis_a, axis_b;	/* plane; a toward b is + */
+	enum interp_axis axis_a, axis_b;	/* plane */
 	double centre_a_mm, centre_b_mm;
-	bool clockwise;			/* seen from +(a x b) */
-	uint32_t turns;			/* whole turns beside the rest; equal
-					 * ends with 0 turns make a full
-					 * circle */
+	double sweep;			/* radians, before its ends are rounded;
+					 * + from a toward b */
 };
+
+/**
+ * interp_build_sweep() - how far an arc turns that a text names by its ends,
+ * its centre and its sense; for interp_build_arc.
+ *
+ * Each place is two mm in the plane.  Ends that are in one direction from the
+ * centre, as far as a text can say it (1e-6 mm), make a full circle.
+ */
+double interp_build_sweep(const double from_mm[2], const double to_mm[2],
+			  const double centre_mm[2], bool clockwise);
 
 /** interp_build_create() - an empty program. Return: NULL if out of memory. */
 struct interp_build *interp_build_create(const struct interp_build_options *o);
@@ -163,9 +178,8 @@ int interp_build_arc(struct interp_build *b, const double end_mm[INTERP_NAXES],
 /* One contour of a pair as a reader knows it. */
 struct interp_build_contour {
 	bool arc;
-	bool clockwise;
-	double centre_mm[2];		/* X and Y, or U and V; arcs only.
-					 * Equal ends make a full circle */
+	double sweep;			/* arcs only, as of interp_build_arc */
+	double centre_mm[2];		/* X and Y, or U and V; arcs only */
 };
 
 /**
