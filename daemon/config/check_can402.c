@@ -141,20 +141,24 @@ static int check_following(struct check *q)
 	return refuse(q, SECTION_CAN402, "following_mm", 0);
 }
 
-/* The identifiers of CiA 301 belong to NMT, SYNC and the drives. */
-static int check_gap_id(struct check *q)
+bool config_frame_is_free(const struct machine_config *c, uint32_t id)
 {
-	const double id = q->c->can402.gap_id;
-	const uint32_t node = (uint32_t)id & 0x7f;
 	bool taken = id < 0x180 || id >= 0x580;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
-		taken = taken || (node_of(q, i) > 0 && node_of(q, i) == node);
-	if (id == 0 || !taken)
+		taken = taken || (c->can402.node[i] > 0 &&
+				  (uint32_t)c->can402.node[i] == (id & 0x7f));
+	return !taken;
+}
+
+static int check_gap_id(struct check *q)
+{
+	const uint32_t id = (uint32_t)q->c->can402.gap_id;
+
+	if (id == 0 || config_frame_is_free(q->c, id))
 		return 0;
-	interp_diag_say(q->diag, "can402.gap_id %.0f, which is in use; one "
-			"from 384 to 1407 whose rest by 128 is no drive's "
-			"node", id);
+	interp_diag_say(q->diag, "can402.gap_id %u, which is in use; "
+			CONFIG_FRAME_WANTED, id);
 	return refuse(q, SECTION_CAN402, "gap_id", 0);
 }
 

@@ -172,19 +172,13 @@ static int check_bits(struct check *q, int field, bool told)
 static int check_id(struct check *q, const char *key, uint32_t id)
 {
 	const struct config_can402 *k = &q->c->can402;
-	bool taken = id < 0x180 || id >= 0x580 || id == (uint32_t)k->gap_id;
 
 	if (q->c->backend != BACKEND_CAN402 || id == 0 ||
-	    strcmp(k->interface, q->c->generator.can_interface) != 0)
-		return 0;
-	for (int i = 0; i < INTERP_NAXES; i++)
-		taken = taken || (k->node[i] > 0 &&
-				  (uint32_t)k->node[i] == (id & 0x7f));
-	if (!taken)
+	    strcmp(k->interface, q->c->generator.can_interface) != 0 ||
+	    (id != (uint32_t)k->gap_id && config_frame_is_free(q->c, id)))
 		return 0;
 	interp_diag_say(q->diag, "generator.%s %u, which is in use on that "
-			"bus; one from 384 to 1407 whose rest by 128 is no "
-			"drive's node", key, id);
+			"bus; " CONFIG_FRAME_WANTED, key, id);
 	return refuse(q, key);
 }
 

@@ -181,6 +181,14 @@ int config_check_can402(const struct machine_config *c,
 			const struct config_lines *lines,
 			struct interp_diag *diag);
 
+/** config_frame_is_free() - may a frame on the drives' bus that is no drive's
+ *  have the identifier @id?  Those of CiA 301 belong to NMT, SYNC and the
+ *  drives. */
+bool config_frame_is_free(const struct machine_config *c, uint32_t id);
+
+#define CONFIG_FRAME_WANTED	"one from 384 to 1407 whose rest by 128 is " \
+				"no drive's node"
+
 /** config_check_generator() - the same for [generator]. */
 int config_check_generator(const struct machine_config *c,
 			   const struct config_lines *lines,
