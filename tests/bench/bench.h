@@ -8,6 +8,7 @@
 
 #include "interp/build.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -76,10 +77,11 @@ static inline int bench_circle(struct interp_build *b, double r_mm, bool pair)
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
 	const struct interp_build_arc arc = {
 		.axis_a = INTERP_X, .axis_b = INTERP_Y, .centre_a_mm = r_mm,
+		.sweep = 2 * M_PI,
 	};
 	const struct interp_build_contour both[2] = {
-		{ .arc = true, .centre_mm = { r_mm } },
-		{ .arc = true, .centre_mm = { r_mm / 2 } },
+		{ .arc = true, .centre_mm = { r_mm }, .sweep = 2 * M_PI },
+		{ .arc = true, .centre_mm = { r_mm / 2 }, .sweep = 2 * M_PI },
 	};
 	struct interp_diag d;
 
