@@ -25,7 +25,8 @@ static void turn(struct interp_build *b, bool arcs)
 {
 	const struct interp_build_word w = { .line = 1, .feed_mm_s = 20 };
 	const struct interp_build_arc a = { .axis_a = INTERP_X,
-					    .axis_b = INTERP_Y };
+					    .axis_b = INTERP_Y,
+					    .sweep = M_PI };
 	const int n = arcs ? 2 : (int)(2 * M_PI * RADIUS_MM / LINE_MM);
 	struct interp_diag d;
 
