@@ -6,10 +6,13 @@
  *
  * The kernel's trace, events gpio_value, says what is driven on the lines STEP
  * and DIR.  The pulls of a simulated chip move A and B.  A pulse is two counts.
- * Each line of the FIFO COMMANDS is a number: the axis slips back by so many
- * pulses.  The file PLACE has the true place of the axis, in counts.
+ * An order through the FIFO COMMANDS is a number: the axis slips back by so many
+ * pulses; or "wall COUNTS": from now on it does not come farther than that many
+ * counts from where it stands; or "open": nothing is in its way.  The file PLACE
+ * has the true place of the axis and what was lost at the wall, both in counts.
  */
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +27,7 @@
 
 static const char *pull[2], *place_file;
 static int level[2], high[2], number[2];	/* encoder; step and dir */
-static long place;
+static long place, wall = LONG_MAX, pressed;
 
 static void put(const char *path, const char *text, int flags)
 {
@@ -42,6 +45,10 @@ static void count(int sign)
 {
 	const int line = (level[0] == level[1]) == (sign > 0) ? 0 : 1;
 
+	if (sign > 0 && place >= wall) {
+		pressed++;
+		return;
+	}
 	level[line] ^= 1;
 	put(pull[line], level[line] ? "pull-up" : "pull-down", 0);
 	place += sign;
@@ -50,12 +57,22 @@ static void count(int sign)
 
 static void move(int sign, long pulses)
 {
-	char text[32];
+	char text[64];
 
 	for (long i = 0; i < COUNTS_A_PULSE * pulses; i++)
 		count(sign);
-	snprintf(text, sizeof(text), "%ld\n", place);
+	snprintf(text, sizeof(text), "%ld %ld\n", place, pressed);
 	put(place_file, text, O_CREAT | O_TRUNC);
+}
+
+static void obey(const char *order)
+{
+	if (strncmp(order, "wall ", 5) == 0)
+		wall = place + atol(order + 5);
+	else if (strncmp(order, "open", 4) == 0)
+		wall = LONG_MAX;
+	else
+		move(-1, atol(order));
 }
 
 static void driven(const char *row)
@@ -94,7 +111,7 @@ int main(int argc, char **argv)
 
 		if (got > 0) {
 			order[got] = '\0';
-			move(-1, atol(order));
+			obey(order);
 		}
 		usleep(LOOK_US);
 		got = read(p[0].fd, text + n, sizeof(text) - 1 - n);

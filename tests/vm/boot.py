@@ -237,7 +237,7 @@ drive_leave = 6502
 """
 
 UNRULY_SCENES = os.environ.get(
-    "EDM_SCENES", "power,says,slow,plc,stranger,flood,jam,odd,absolute").split(",")
+    "EDM_SCENES", "power,says,slow,plc,stranger,flood,jam,wall,odd,absolute").split(",")
 
 STRICT_REFUSED = """[axis.Z]
 drive_identity = 1111

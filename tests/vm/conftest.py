@@ -77,6 +77,7 @@ def encoder():
         "encoder.ini": machine(tail=ENCODER),
         "encoder.ngc": "G21 G90\nG1 X0.3 F6\nG1 X0.1\nM30\n",
         "back.ngc": "G21 G90\nG1 X0.2 F6\nM30\n",
+        "wall.ngc": "G21 G90\nG1 X0.5 F6\nM30\n",
         "adc.ini": machine(period_us=1000, v=0.5, tail=ADC),
         "adc.ngc": SLOW_JOB,
     }, "-d", copies=(compiled("axis-sim"), HERE / "guest/adc.sh")))

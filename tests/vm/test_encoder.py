@@ -29,7 +29,7 @@ def test_pulses_lost_are_a_fault_and_are_made_good(encoder, edmd):
     assert "axis X: by its encoder it is not where its pulses went" in log
     ends = [line.split(" ", 2) for line in text.splitlines()
             if line.startswith("at ")]
-    assert len(ends) == 2, text
+    assert len(ends) == 3, text
     at, status = int(ends[0][1]), json.loads(ends[0][2])
     print(f"{edmd}: 50 pulses lost, made good: job at {status['pos_mm'][0]} mm,"
           f" axis at {at} counts of 0.5 um")
@@ -46,16 +46,32 @@ def test_the_axis_ends_where_the_job_does(encoder, edmd):
         ends = [int(line.split()[1]) for line in text.splitlines()
                 if line.startswith("at ")]
         if name == edmd:
-            assert ends[0] - begun == 200
+            assert [e - begun for e in ends] == [200, 400, 1000]
         begun = ends[-1]
 
 
 @both
-def test_too_many_lost_pulses_lose_the_place(encoder, edmd):
-    text, log = said(encoder, edmd)
-    assert "axis X: its place is lost" in log
-    assert "lost start 0" not in text and "lost start" in text
-    assert "home 0" in text
+def test_an_axis_that_was_pushed_far_is_not_driven_back(encoder, edmd):
+    text, _ = said(encoder, edmd)
+    pushed = [line.split()[1:] for line in text.splitlines()
+              if line.startswith(("pushed: ", "far: "))]
+    assert len(pushed) == 2 and pushed[0] == pushed[1], text
+
+
+@both
+def test_nothing_presses_against_a_wall_that_does_not_yield(encoder, edmd):
+    """From the stop on, no pulse goes toward it, and each way leads away from where
+    the axis stands; when the wall is gone, a job ends where it says."""
+    text, _ = said(encoder, edmd)
+    rows = [line.rsplit(" ", 2) for line in text.splitlines()
+            if line.startswith("wall: ")]
+    at = [int(row[1]) for row in rows]
+    pressed = [int(row[2]) for row in rows]
+    print(f"{edmd}:", *rows, sep="\n")
+    assert len(rows) == 7 and pressed[0] > 0, text
+    assert set(pressed) == {pressed[0]}, text
+    # Two counts are a pulse of 1 um.
+    assert [a - at[0] for a in at] == [0, 0, -20, -40, -60, -60, -100], text
 
 
 @both

@@ -5,6 +5,7 @@ guest/unruly.py plays the drives and writes down what no master may do;
 guest/can402_unruly.py did it, and was the operator.
 """
 import json
+import math
 
 import pytest
 from boot import UNRULY_SCENES
@@ -77,6 +78,21 @@ def test_frames_that_had_to_wait_are_not_sent_stale(seen):
         most = max(sum(t <= u < t + 0.01 for u in rows) for t in rows)
         print(f"{what}: {most} SYNCs in one period")
         assert most <= 5, what
+
+
+@pytest.mark.skipif("wall" not in UNRULY_SCENES, reason="not played")
+def test_nothing_presses_against_a_wall_that_does_not_yield(seen):
+    """From the stop on no target lies in it, but for a rounding to pulses, and each
+    way leads away from where the axis stands."""
+    rows = seen("wall")["wall"]
+    print(*rows, sep="\n")
+    pulse = 524288 / 5000
+    assert all(row[1] is None or row[1][0] == 0 for row in rows)
+    assert max(row[3] for row in rows) <= pulse / 2 + 1
+    moved = [(row[2] - rows[0][2]) / pulse for row in rows]
+    along = 50 * 4 / math.hypot(4, 1.2)         # pulses of X, 50 um of the line
+    wanted = [0, 0, *(-along * i for i in (1, 2, 3, 3)), -3 * along - 50]
+    assert all(abs(a - b) <= 2 for a, b in zip(moved, wanted)), (moved, wanted)
 
 
 @pytest.mark.skipif("stranger" not in UNRULY_SCENES, reason="not played")

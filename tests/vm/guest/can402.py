@@ -73,10 +73,10 @@ class Scene:
     def tell(self, *words):
         os.write(self.fifo, (" ".join(map(str, words)) + "\n").encode())
 
-    def report(self, name):
+    def report(self, name, what="report"):
         to = R / f"{name}.report"
         to.unlink(missing_ok=True)
-        self.tell("report", to)
+        self.tell(what, to)
         while not to.exists():
             if self.drives.poll() is not None:
                 raise SystemExit("the drives have died")

@@ -449,6 +449,32 @@ def stream(make, seconds):
         time.sleep(0.01)
 
 
+# -- An obstacle that does not yield ------------------------------------------
+
+def wall():
+    """X comes to a wall while it cuts; then an operator's ways out."""
+    with Shop("unruly-wall", {1: {}, 2: {}}) as s:
+        s.begin()
+        s.tell("wall", 1, 52429)       # 0.5 mm
+        s.until("at the wall", 60, state="fault")
+        time.sleep(1)
+        s.more["wall"] = [beside_wall(s, *verb.split()) for verb in
+                          ["", "reset"] + 3 * ["retract 0.05 --wait"] +
+                          ["stop", "jog X -0.05 --wait"]]
+        s.tell("open", 1)
+        s.operate("open")
+        s.finish()
+
+
+def beside_wall(s, *verb):
+    """Where X stands behind @verb, and how far in the wall a target was."""
+    s.tell("clear", 1)
+    s.tell("allow", 0)
+    answer = s.ctl(*verb) if verb else None
+    time.sleep(1)
+    return [" ".join(verb), answer, *s.report("wall", "stands")[0]]
+
+
 # -- A bus that is taken ------------------------------------------------------
 
 def passes(what, rate):
@@ -480,7 +506,7 @@ if __name__ == "__main__":
     SEED, RUNS = int(sys.argv[2]), int(sys.argv[3])
     SCENES = {"power": lambda: power(SEED, RUNS), "says": lambda: says(SEED, RUNS),
               "slow": slow, "plc": lambda: plc(SEED, RUNS),
-              "flood": lambda: flood(SEED, RUNS), "jam": jam,
+              "flood": lambda: flood(SEED, RUNS), "jam": jam, "wall": wall,
               "odd": odd, "absolute": absolute, "stranger": stranger}
     for which in sys.argv[4].split(","):
         SCENES[which]()

@@ -22,7 +22,35 @@ lines() { echo "brake $(level sim0 26) enable $(level sim0 27)"; }
 # The axis looks each 20 ms: it may still be on its last pulses.
 ended() {
 	status_is 'state *idle' && sleep 0.2 &&
-		echo "at $(cat place) $(ctl --json status)"
+		echo "at $(place) $(ctl --json status)"
+}
+
+place() { cut -d' ' -f1 place; }
+
+# What an operator does in front of a wall, and where the axis is behind it: its
+# place, and how many counts were lost at the wall so far.
+beside_wall() {	# VERB ...
+	ctl "$@"
+	echo "rc $?"
+	sleep 0.5
+	echo "wall: $* $(cat place)"
+}
+
+against_a_wall() {
+	echo "wall 100" > slip
+	ctl submit wall.ngc
+	status_is 'fault *following'
+	sleep 0.2
+	echo "wall: stopped $(cat place)"
+	beside_wall reset
+	for i in 1 2 3; do
+		beside_wall retract 0.01 --wait
+	done
+	beside_wall stop
+	beside_wall jog X -0.02 --wait
+	echo open > slip
+	ctl submit wall.ngc
+	status_is 'state *travel' && ended
 }
 
 for name in edmd edmd2; do
@@ -42,18 +70,18 @@ for name in edmd edmd2; do
 	ctl start; echo "start $?"
 	status_is 'state *travel' && echo "goes on: $(lines)"
 	ended
-	# More than that: its place is lost.
+	# More than that: it is not driven back.
 	ctl submit encoder.ngc
 	status_is 'state *travel' && sleep 1
 	echo 150 > slip
 	status_is 'fault *following'
+	sleep 0.2; echo "pushed: $(place)"
 	ctl reset; status_is 'fault *none'
-	ctl start; echo "lost start $?"
-	ctl stop; status_is 'state *idle'
-	ctl home X; echo "home $?"
-	status_is 'state *idle'
+	ctl start; status_is 'fault *following' && echo "far: $(place)"
+	ctl stop; ctl reset; status_is 'state *idle'
 	ctl submit back.ngc
 	status_is 'state *travel' && ended
+	against_a_wall
 	} > run-$name.said 2>&1
 	daemons_end run-$name
 	cp run-$name.said run-$name.log run-$name.edmd-rc $J/

@@ -55,6 +55,8 @@ class Drive:
         self.true = traits.get("at", 1000 * node)
         self.powered, self.known, self.allowed = False, False, False
         self.jammed, self.trap, self.lies = False, None, {}
+        self.wall, self.beyond = None, 0    # what it does not pass, and how far
+                                            # behind that a target was
         self.homing = False             # the operator homes this or another
         self.wandered = False
         self.runs = 0                   # boots so far: answers of old ones fall
@@ -434,6 +436,12 @@ class Drive:
         if self.follows() and self.syncs > 20:
             self.spring("following")
 
+    def stopped(self, to):
+        if self.wall is None:
+            return to
+        self.beyond = max(self.beyond, to - self.wall)
+        return min(to, self.wall)
+
     def move(self, target):
         if self.follows() and self.target is not None:
             way = wrap(target - self.target)
@@ -442,7 +450,8 @@ class Drive:
             if way and not self.known:
                 self.crime("was moved, and nobody knows its place")
             if not self.jammed:
-                self.true += wrap(target - self.count())
+                self.true = self.stopped(self.true +
+                                         wrap(target - self.count()))
         self.target = target
 
     # -- Time ----------------------------------------------------------------
@@ -580,6 +589,9 @@ ORDERS = {
     "quick": lambda d: d.state == ENABLED and d.enter(STOPPING),
     "leave": lambda d: d.state == ENABLED and d.enter(DISABLED),
     "jam": lambda d, yes="1": setattr(d, "jammed", yes == "1"),
+    "wall": lambda d, ahead: setattr(d, "wall", d.true + int(ahead)),
+    "clear": lambda d: setattr(d, "beyond", 0),
+    "open": lambda d: setattr(d, "wall", None),
     "push": lambda d, by: setattr(d, "true", d.true + int(by)),
     "lie": lambda d, what, value: d.lies.__setitem__(what, int(value, 16)),
     "truth": lambda d: d.lies.clear(),
@@ -596,6 +608,10 @@ def order(bus, line):
         bus.gap = int(float(args[0]) * 100)
     elif verb == "foreign-start":
         bus.foreign_start = args[0] == "1"
+    elif verb == "stands":      # short: a long one costs answers to SYNC
+        with open(args[0] + ".new", "w") as f:
+            json.dump([[d.true, d.beyond] for d in bus.drives], f)
+        os.rename(args[0] + ".new", args[0])
     elif verb == "report":
         report = {"rows": bus.rows, "crimes": bus.crimes,
                   "aborts": bus.aborts, "notes": bus.notes,
