@@ -116,8 +116,9 @@ static int open_server(struct panel *p)
 	info.port = (int)p->config.panel.port;
 	info.protocols = mine;
 	info.user = p;
-	info.gid = -1;
-	info.uid = -1;
+	/* Versions of the library differ in the sign of their type. */
+	info.gid = (__typeof__(info.gid))-1;
+	info.uid = (__typeof__(info.uid))-1;
 	info.alpn = "http/1.1";
 	info.fd_limit_per_thread = CONNECTIONS_MAX;
 	info.timeout_secs = 10;

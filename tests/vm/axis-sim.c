@@ -8,8 +8,9 @@
  * and DIR.  The pulls of a simulated chip move A and B.  A pulse is two counts.
  * An order through the FIFO COMMANDS is a number: the axis slips back by so
  * many pulses; or "wall COUNTS": from now on it does not come farther than that
- * many counts from where it stands; or "open": nothing is in its way.  The file
- * PLACE has the true place of the axis and what was lost at the wall, in counts.
+ * many counts from where it stands; or "open": nothing is in its way.  The
+ * file PLACE has the true place of the axis and what was lost at the wall, in
+ * counts.
  */
 #include <fcntl.h>
 #include <limits.h>
