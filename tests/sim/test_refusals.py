@@ -234,3 +234,28 @@ def test_defaults_against_each_other_have_no_line(tmp_path):
     r = edmd_on_gpio(tmp_path, "[gpio]\nstep_X = 1\ndir_X = 2\n")
     assert r.returncode == 78
     assert "/m.ini: error: axis.X.v_max_mm_s 80 mm/s is faster" in r.stderr
+
+
+@pytest.mark.parametrize("text, line", [
+    ("G90 G1 X2. F5\n%\nX5.\nM2\n", 2), ("O0007\n%\nG90 G1 X2. F5\nX5.\n%\n", 2),
+    ("(name)\n\nG1 X2. F5\n% (end)\n\n(note)\nG4 P1\n", 4),
+])
+def test_words_behind_a_percent_that_began_nothing_are_refused(text, line):
+    r = run("--check", text=text)
+    assert r.returncode == 65, r.stderr
+    assert f"-:{line}:1: error: a % with words behind it".encode() in r.stderr
+
+
+@pytest.mark.parametrize("text, noted", [
+    ("%\nG1 X2. F5\nM2\n%\nX5.\n", True), ("\n(name)\n%\nG1 X2. F5\n%\nX5.\n", True),
+    ("G1 X2. F5\nM2\n%\n\n(behind)\n", False), ("%\nG1 X2. F5\nM2\n%\n \n", False),
+])
+def test_words_behind_the_percent_that_ends_the_text_are_noted(text, noted):
+    r = run("--check", text=text)
+    assert r.returncode == 0, r.stderr
+    assert (b"nothing behind the % that ends the text" in r.stderr) == noted
+
+
+def test_c_of_three_digits_stays_an_axis_when_it_is_emitted():
+    r = run("--emit", "iso", text="G90 G1 F100 X1.\nG1 C120.\nX2.\nM2\n")
+    assert b"G1 C120.\n" in r.stdout, r.stdout

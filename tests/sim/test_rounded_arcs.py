@@ -188,6 +188,19 @@ def test_what_is_farther_off_is_refused(kind, units, decimals, pulse_mm, tmp_pat
             (lines, r.stderr)
 
 
+@pytest.mark.parametrize("pulse_mm", [1e-3, 1e-4])
+@pytest.mark.parametrize("units, decimals", UNITS)
+def test_what_is_emitted_of_it_is_taken_again(units, decimals, pulse_mm, tmp_path):
+    """Its centre is the one by which both ends are on one circle."""
+    n = Digits(units, decimals)
+    path = machine(tmp_path, pulse_mm)
+    lines = [w for a in arcs(seeded(), n) for w in by_centre(a)]
+    job = run("--machine", path, "--emit", "iso", text=program(n, lines))
+    assert job.returncode == 0, job.stderr
+    r = run("--machine", path, "--check", text=job.stdout.decode())
+    assert r.returncode == 0, r.stderr
+
+
 @pytest.mark.parametrize("units, decimals", UNITS)
 def test_a_radius_too_short_by_more_than_a_rounding_is_refused(units, decimals,
                                                                tmp_path):

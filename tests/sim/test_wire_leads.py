@@ -189,6 +189,23 @@ M2
         path_of(ways).buffer(0.003))
 
 
+@pytest.mark.parametrize("where, change", [
+    ("G42 ", ""), ("H1=-0.15\n", ""), ("", "G42 "), ("G42 D2 ", "")])
+def test_another_side_holds_from_the_start_of_its_motion(plain, where, change):
+    """Two half circles of 5 mm, the second one from the other side."""
+    text = "G90 F100 H1=0.15 H2=0.2\nG41 D1 G1 X5 Y0\nG3 X-5 Y0 I-5 J0\n" \
+        f"{where}{change}G3 X5 Y0 I5 J0\nG40 G1 X8\nM2\n"
+    ways, said = ways_of(plain, text)
+    assert ways, said
+    arcs = [w for w in ways if w[3]]
+    radii = [math.dist(w[1], w[3][:2]) for w in arcs]
+    assert np.allclose(radii, [4.85, 5.2 if "D2" in where else 5.15], atol=2 * UM)
+    assert all(math.hypot(*w[3][:2]) < 2 * UM for w in arcs)
+    # Across at the place, square to the contour.
+    across = [w for w in ways if not w[3] and w[1][0] < 0]
+    assert len(across) == 1 and abs(across[0][1][1] - across[0][2][1]) < UM
+
+
 # -- A circle inside of an open contour ---------------------------------------
 
 CIRCLES = [

@@ -214,8 +214,9 @@ static void words_behind_the_end_are_noted(void **state)
 	static const struct {
 		const char *text, *noted;
 	} row[] = {
-		{ "%\nG0 X1.\nM2\n%\nrubbish\n", "" },
-		{ "%\nG0 X1.\nM2\n% (end)\nrubbish\n", "" },
+		{ "%\nG0 X1.\nM2\n%\nrubbish\n", "5 nothing behind the %|" },
+		{ "%\nG0 X1.\nM2\n% (end)\nrubbish\n",
+		  "5 nothing behind the %|" },
 		{ "%\nG0 X1.\nM2\nrubbish\n", "4 nothing behind the e|" },
 		{ "%\nG0 X1.\nM2\n%junk\nrubbish\n",
 		  "4 nothing behind the e|" },

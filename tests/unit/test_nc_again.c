@@ -104,7 +104,7 @@ static const struct {
 	{ "generic", "G1\n" LONG("X1.") LONG("X2.") LONG("X3."), true },
 	{ "generic", "G1\nA1 U1\nA2 U2\nA3 U3\n", true },
 	{ "generic", "G1\nx1 y1\nX2 Y2\nx3 y3\nx 4 y-5\nx+6 y 7\n", true },
-	{ "generic", "G1\nX1\n/X2\nX3\n\nX4\n%\nX5\n", true },
+	{ "generic", "%\nG1\nX1\n/X2\nX3\n\nX4\n%\nX5\n", true },
 	{ "generic", "G1\nX1;\nX2;\nX3;\n", true },
 	{ "generic", "G1\r\nX1 \r\nX2 \r\nX3\r\nX4\r\nX5\r\nM2\r\n", true },
 	{ "generic", "M98 P7 L3\nM2\nO7\nG91 G1\nX1\nX1\nX1\nM99\n", true },

@@ -3,6 +3,7 @@
 #include "code/emitter.h"
 
 #include "interp/angle.h"
+#include "wire/curve.h"
 
 #include <errno.h>
 #include <math.h>
@@ -38,7 +39,8 @@ static void word(struct words *w, const char *format, ...)
 	w->n += n < 0 ? 0 : (size_t)n < room ? (size_t)n : room - 1;
 }
 
-/* A letter and a number with up to six decimals, without zeros at the end. */
+/* A letter and a number with up to six decimals, without zeros at the end.  C
+ * keeps its point: without one it may be a condition. */
 static void number(struct words *w, char letter, double v)
 {
 	char s[40];
@@ -46,7 +48,7 @@ static void number(struct words *w, char letter, double v)
 
 	while (s[n - 1] == '0')
 		n--;
-	if (s[n - 1] == '.')
+	if (s[n - 1] == '.' && letter != 'C')
 		n--;
 	word(w, " %c%.*s", letter, n, n == 2 && s[0] == '-' && s[1] == '0' ?
 	     "0 " : s);
@@ -93,6 +95,9 @@ static const struct {
  * whether it goes round or nowhere. */
 #define NEAR_MM		1e-5
 
+/* Radii that differ by more are not taken by who reads the text. */
+#define EVEN_MM		1e-6
+
 static double gap_mm(const struct interp_arc *a,
 		     const double from_mm[INTERP_NAXES],
 		     const double to_mm[INTERP_NAXES])
@@ -115,12 +120,17 @@ static void arc_part(struct words *w, const struct interp_arc *a,
 		     const double from_mm[INTERP_NAXES],
 		     const double to_mm[INTERP_NAXES], uint32_t axes)
 {
+	const struct vec from = { from_mm[a->axis_a], from_mm[a->axis_b] };
+	const struct vec to = { to_mm[a->axis_a], to_mm[a->axis_b] };
+	const struct curve c = curve_arc(from, to, (struct vec) { a->a_mm,
+					 a->b_mm }, a->sweep);
+	const struct vec centre = curve_evened(&c).centre;
 	const int plane = plane_of(a);
 
 	word(w, a->sweep < 0 ? "G2" : "G3");
 	places(w, to_mm, axes);
-	number(w, planes[plane].i, a->a_mm - from_mm[a->axis_a]);
-	number(w, planes[plane].j, a->b_mm - from_mm[a->axis_b]);
+	number(w, planes[plane].i, centre.x - from.x);
+	number(w, planes[plane].j, centre.y - from.y);
 }
 
 /* Half of its turn, and half of the way of all other axes. */
@@ -162,7 +172,8 @@ static int arc(struct iso_writer *o, struct words *w, uint32_t i)
 	if (gap < NEAR_MM && turns < 0.5) {
 		word(w, "G1");
 		places(w, at[2], axes);
-	} else if (turns > 1 || (gap < NEAR_MM && gap > 0)) {
+	} else if (turns > 1 || (gap < NEAR_MM && gap > 0) ||
+		   (turns > 0.5 && fabs(a->dr_mm) > EVEN_MM)) {
 		middle_mm(a, at[0], at[2], at[1]);
 		arc_part(w, a, at[0], at[1], axes);
 		feed(o, w, seg);

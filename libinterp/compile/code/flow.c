@@ -431,6 +431,48 @@ static bool has_words(const uint8_t *p, const uint8_t *end)
 	return p < end && (isalpha(*p) || *p == '%');
 }
 
+static bool begins_with_percent(const struct nc_reader *r)
+{
+	const uint8_t *stop;
+
+	for (const uint8_t *p = r->text; p < r->end;
+	     p = nc_line_next(stop, r->end)) {
+		stop = nc_line_end(p, r->end);
+		p = nc_skip_void(p, stop);
+		if (p < stop && *p != ';' && *p != '/')
+			return *p == '%';
+	}
+	return false;
+}
+
+/* Nothing behind the % that ends the text is read.  If no % began the text, it
+ * may as well have got between the lines. */
+int nc_check_tape(struct nc_reader *r)
+{
+	const uint8_t *at = r->text, *p = at, *end = r->text_end;
+	uint32_t line = 0, n;
+
+	if (r->end == end || *r->end != '%')
+		return 0;
+	for (; p <= r->end; p = nc_line_next(nc_line_end(p, end), end)) {
+		at = p;
+		line++;
+	}
+	for (n = line + 1; p < end && !has_words(p, nc_line_end(p, end)); n++)
+		p = nc_line_next(nc_line_end(p, end), end);
+	if (p == end)
+		return 0;
+	if (begins_with_percent(r)) {
+		nc_note_tape(r, n);
+		return 0;
+	}
+	r->line = line;
+	r->line_at = at;
+	return nc_refuse(r, r->end, "a % in front of the program too, or none",
+			 "a %% with words behind it, in line %u, and no %% "
+			 "before the program", n);
+}
+
 /* Behind the end there may be subprograms.  Other words are a second program,
  * or the end came too early. */
 static void note_rest(struct nc_reader *r)

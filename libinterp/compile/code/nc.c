@@ -159,7 +159,9 @@ int interp_nc_compile(const struct interp_text *text,
 		};
 	open_text(&r, text->bytes ? text->at : "", text->bytes);
 	reset_modes(&r);
-	err = nc_electrode_begin(&r);
+	err = nc_check_tape(&r);
+	if (!err)
+		err = nc_electrode_begin(&r);
 	if (!err)
 		err = read_lines(&r);
 	if (!err) {

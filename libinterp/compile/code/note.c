@@ -100,16 +100,26 @@ void nc_note_vacant(struct nc_reader *r, uint32_t n)
 		    "program; a word with it is left out", n);
 }
 
-void nc_note_rest(struct nc_reader *r, uint32_t line)
+static void say_at(struct nc_reader *r, uint32_t line, const char *text)
 {
 	const uint32_t here = r->line;
 
 	if (!r->o->notes)
 		return;
 	r->line = line;
-	say(r, "nothing behind the end of the program is carried out, except "
-	    "subprograms that it calls");
+	say(r, "%s", text);
 	r->line = here;
+}
+
+void nc_note_tape(struct nc_reader *r, uint32_t line)
+{
+	say_at(r, line, "nothing behind the % that ends the text is read");
+}
+
+void nc_note_rest(struct nc_reader *r, uint32_t line)
+{
+	say_at(r, line, "nothing behind the end of the program is carried "
+	       "out, except subprograms that it calls");
 }
 
 void nc_note_electrode(struct nc_reader *r, enum nc_group group,

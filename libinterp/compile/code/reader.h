@@ -611,6 +611,10 @@ bool nc_begins_program(const struct nc_reader *r, const uint8_t *p,
  *  the end of its line, so that they are refused. */
 const uint8_t *nc_tape_end(const uint8_t *text, const uint8_t *end);
 
+/** nc_check_tape() - words behind that % are noted, or refused if no % begins
+ *  the text.  Return: 0, or -EINVAL. */
+int nc_check_tape(struct nc_reader *r);
+
 void nc_forget_labels(struct nc_reader *r);
 
 /** nc_column() - the column in the text of byte @at of the present line. */
@@ -689,6 +693,9 @@ void nc_note_columns(struct nc_reader *r, char letter, uint32_t number);
 
 /** nc_note_title() - words behind the first %. */
 void nc_note_title(struct nc_reader *r);
+
+/** nc_note_tape() - words behind the % that ends the text, in line @line. */
+void nc_note_tape(struct nc_reader *r, uint32_t line);
 
 /** nc_note_rest() - words behind the end, in line @line. */
 void nc_note_rest(struct nc_reader *r, uint32_t line);

@@ -102,8 +102,14 @@ bool contour_leads(const struct contour *k)
 	const double was = k->last_offset_mm, is = k->offset_mm;
 
 	if (was != 0 || is != 0)
-		return (was > 0) != (is > 0) || (was < 0) != (is < 0);
+		return (was != 0) != (is != 0);
 	return (k->last_slope != 0) != (k->slope != 0);
+}
+
+/* Does the wire change from one side of the contour to the other? */
+static bool crosses(const struct contour *k)
+{
+	return k->last_offset_mm * k->offset_mm < 0;
 }
 
 static int check_lead(const struct contour *k, const struct contour_motion *m,
@@ -126,6 +132,22 @@ int contour_keep(struct contour *k, const struct contour_motion *m,
 	return 0;
 }
 
+/* On the spot where the last motion ended: the next one holds its own side from
+ * its start. */
+static int cross_over(struct contour *k, const struct contour_motion *next,
+		      struct interp_diag *diag)
+{
+	struct contour_motion m = *next;
+
+	for (int p = 0; p < 2; p++)
+		m.c[p] = curve_line(m.c[p].from, m.c[p].from);
+	memcpy(m.end_mm, m.from_mm, sizeof(m.end_mm));
+	m.lead = m.step = true;
+	m.todo = k->ntodo;
+	m.ntodo = 0;
+	return contour_keep(k, &m, diag);
+}
+
 static int take_one(struct contour *k, struct contour_motion *m,
 		    struct interp_diag *diag)
 {
@@ -138,6 +160,8 @@ static int take_one(struct contour *k, struct contour_motion *m,
 	for (int p = 0; !m->lead && p < 2; p++)
 		m->c[p] = curve_evened(&m->c[p]);
 	err = check_lead(k, m, diag);
+	if (!err && crosses(k))
+		err = cross_over(k, m, diag);
 	if (!err && !is_on(k->last_offset_mm, k->last_slope) && !k->recording)
 		err = contour_release(k, m, diag);
 	m->todo = k->ntodo;
