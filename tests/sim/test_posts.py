@@ -203,7 +203,9 @@ def test_what_is_skipped_is_told_with_its_line():
     assert said("generic", "G0 X1.\n/G0 X2.\n/X3.\nM2\n") == [("2", "/")]
     assert said("fanuc-sinker", "G0 X1.\nM30\n(A)\n\nX2.\nM30\n") == \
         [("5", "nothing behind")]
-    for text in ("%\nG0 X1.\nM30\n%\nrest\n", "G0 X1.\nM2\n\x1a",
+    assert said("generic", "%\nG0 X1.\nM30\n%\nrest\n") == \
+        [("5", "nothing behind")]
+    for text in ("%\nG0 X1.\nM30\n%\n", "G0 X1.\nM2\n\x1a",
                  "M98 P1\nM30\n; a\n(b)\nN5 O1\nG0 X2.\nM99\n",
                  "G0 X1.\nM2\n" + "\0" * 50):
         assert said("generic", text) == []
