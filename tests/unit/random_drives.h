@@ -216,6 +216,14 @@ static inline void count_rest(struct random_drives *d, const struct rig *r)
 	d->unfrozen = stands && !frozen ? d->unfrozen + 1 : 0;
 }
 
+/* How far an axis is on its way back to the path. */
+static inline int32_t off_path(const struct rig *r, int i)
+{
+	const struct resync *s = &r->c.resync;
+
+	return s->walks || s->is_off ? s->off[i] : 0;
+}
+
 /* After each period.  Return: it was looked at where it stands. */
 static inline bool check_drives(struct random_drives *d, const struct rig *r)
 {
@@ -227,7 +235,8 @@ static inline bool check_drives(struct random_drives *d, const struct rig *r)
 		const int32_t added = r->c.contouring.on ?
 				      r->c.contouring.added[i] : 0;
 
-		cured[i] = r->out.target[i] - added - r->c.out.target[i];
+		cured[i] = r->out.target[i] - added - off_path(r, i) -
+			   r->c.out.target[i];
 		check_lead(d, r, i, added);
 		check_dropped(d, r, i);
 		if (d->begun)

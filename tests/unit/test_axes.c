@@ -72,6 +72,26 @@ static void a_second_start_does_not_begin_the_wait_anew(void **st)
 	rig_free(&r);
 }
 
+/* Power comes, and what a PLC commands is carried out behind the look at the
+ * inputs and in front of what waits for power. */
+static void a_start_replaces_a_retract_that_waited_for_power(void **st)
+{
+	struct rig r;
+
+	(void)st;
+	make(&r);
+	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 0.1), ANSWER_DONE);
+	steps(&r, OPEN_V, 5);
+	r.in.axes_off = r.c.axes.off = false;
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	for (int i = 0; i < 100; i++) {
+		step(&r, OPEN_V);
+		assert_false(r.c.hold.moving);
+	}
+	assert_int_equal(r.c.state, STATE_TRAVEL);
+	rig_free(&r);
+}
+
 static void drives_that_are_not_up_refuse_start_and_retract(void **st)
 {
 	struct rig r;
@@ -353,6 +373,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_start_waits_for_the_axes_and_goes_on_by_itself),
 		cmocka_unit_test(a_second_start_does_not_begin_the_wait_anew),
+		cmocka_unit_test(
+			a_start_replaces_a_retract_that_waited_for_power),
 		cmocka_unit_test(drives_that_are_not_up_refuse_start_and_retract),
 		cmocka_unit_test(a_hold_or_stop_ends_the_wait),
 		cmocka_unit_test(a_jog_or_homing_that_ends_waits_no_longer),

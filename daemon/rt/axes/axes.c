@@ -40,11 +40,19 @@ void axes_guard(struct cycle *c, const struct io_inputs *in)
 	resync_look(c, in);
 }
 
+void axes_forget(struct cycle *c)
+{
+	c->axes.phase = AXES_FREE;
+	c->axes.then = NULL;
+}
+
 void axes_want(struct cycle *c, axes_then_fn *then, double arg_mm)
 {
 	struct axes *a = &c->axes;
 
 	if (!a->off && !resync_is_off(c)) {
+		/* Power came in this cycle; what waited for it is replaced. */
+		axes_forget(c);
 		c->out.enable = true;
 		if (then)
 			then(c, arg_mm);
@@ -60,12 +68,6 @@ void axes_want(struct cycle *c, axes_then_fn *then, double arg_mm)
 		resync_search(c);
 	else
 		c->out.enable = true;
-}
-
-void axes_forget(struct cycle *c)
-{
-	c->axes.phase = AXES_FREE;
-	c->axes.then = NULL;
 }
 
 /* An axis that was moved far by hand gets no power. */
