@@ -431,6 +431,14 @@ static bool has_words(const uint8_t *p, const uint8_t *end)
 	return p < end && (isalpha(*p) || *p == '%');
 }
 
+/* Has a line words, and not one % more? */
+static bool is_more(const uint8_t *p, const uint8_t *end)
+{
+	const uint8_t *at = nc_skip_void(p, end);
+
+	return has_words(p, end) && !(*at == '%' && is_percent(at, end));
+}
+
 static bool begins_with_percent(const struct nc_reader *r)
 {
 	const uint8_t *stop;
@@ -458,7 +466,7 @@ int nc_check_tape(struct nc_reader *r)
 		at = p;
 		line++;
 	}
-	for (n = line + 1; p < end && !has_words(p, nc_line_end(p, end)); n++)
+	for (n = line + 1; p < end && !is_more(p, nc_line_end(p, end)); n++)
 		p = nc_line_next(nc_line_end(p, end), end);
 	if (p == end)
 		return 0;

@@ -132,6 +132,20 @@ int contour_keep(struct contour *k, const struct contour_motion *m,
 	return 0;
 }
 
+int contour_keep_step(struct contour *k, const struct contour_motion *m,
+		      struct interp_diag *diag)
+{
+	struct contour_motion step = *m;
+
+	for (int p = 0; p < 2; p++)
+		step.c[p] = curve_line(m->c[p].to, m->c[p].to);
+	memcpy(step.from_mm, m->end_mm, sizeof(step.from_mm));
+	step.lead = step.step = true;
+	step.todo = k->ntodo;
+	step.ntodo = 0;
+	return contour_keep(k, &step, diag);
+}
+
 /* On the spot where the last motion ended: the next one holds its own side from
  * its start. */
 static int cross_over(struct contour *k, const struct contour_motion *next,
@@ -140,12 +154,9 @@ static int cross_over(struct contour *k, const struct contour_motion *next,
 	struct contour_motion m = *next;
 
 	for (int p = 0; p < 2; p++)
-		m.c[p] = curve_line(m.c[p].from, m.c[p].from);
+		m.c[p].to = m.c[p].from;
 	memcpy(m.end_mm, m.from_mm, sizeof(m.end_mm));
-	m.lead = m.step = true;
-	m.todo = k->ntodo;
-	m.ntodo = 0;
-	return contour_keep(k, &m, diag);
+	return contour_keep_step(k, &m, diag);
 }
 
 static int take_one(struct contour *k, struct contour_motion *m,

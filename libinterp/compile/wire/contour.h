@@ -100,6 +100,10 @@ bool contour_leads(const struct contour *k);
 int contour_keep(struct contour *k, const struct contour_motion *m,
 		 struct interp_diag *diag);
 
+/** contour_keep_step() - keep a step on the spot where @m ends. */
+int contour_keep_step(struct contour *k, const struct contour_motion *m,
+		      struct interp_diag *diag);
+
 /* -- contour_curve.c ------------------------------------------------------ */
 
 int contour_cut_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],

@@ -163,12 +163,6 @@ int contour_play_step(struct contour *k, const struct contour_pass *p,
 {
 	struct contour_motion m = k->m[k->n - 1];
 
-	for (int i = 0; i < 2; i++)
-		m.c[i] = curve_line(m.c[i].to, m.c[i].to);
-	memcpy(m.from_mm, m.end_mm, sizeof(m.from_mm));
-	m.lead = m.step = true;
-	m.todo = k->ntodo;
-	m.ntodo = 0;
 	set_word(&m, p);
-	return contour_keep(k, &m, diag);
+	return contour_keep_step(k, &m, diag);
 }
