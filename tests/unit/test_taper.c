@@ -5,6 +5,8 @@
 #include "walk_help.h"
 #include "seed.h"
 
+#include "interp/angle.h"
+
 #define PULSE	0.001
 
 /* Two contours on the lattice, places from their own centres, pulses. */
@@ -555,9 +557,44 @@ static void a_wrong_bit_is_met_as_a_bad_segment(void **st)
 	unmake(&m);
 }
 
+/* Both circles are smaller than a pulse: there is nothing to walk. */
+static void circles_of_less_than_a_pulse_are_no_segment(void **st)
+{
+	const double r_mm[] = { 0.2 * PULSE, 0.45 * PULSE, 0.73 * PULSE };
+	const struct interp_build_word w = { .line = 1, .feed_mm_s = 1 };
+
+	(void)st;
+	for (int how = 0; how < INTERP_NSTRATEGIES; how++) {
+		for (int i = 0; i < 9; i++) {
+			struct interp_build *b = begin((enum interp_strategy)
+						       how);
+			const struct interp_build_contour c[2] = {
+				{ .arc = true, .sweep = ANGLE_TURN,
+				  .centre_mm = { r_mm[i % 3], 0 } },
+				{ .arc = true, .sweep = ANGLE_TURN,
+				  .centre_mm = { r_mm[i / 3], 0 } },
+			};
+			const double at[INTERP_NAXES] = { 0 };
+			struct interp_diag d = { 0 };
+			struct points p;
+			struct made m;
+
+			assert_int_equal(interp_build_pair(b, at, c, &w, &d),
+					 0);
+			line(b, (double[INTERP_NAXES]) { 1 });
+			m = finish(b);
+			p = walk_all(&m, 1e-4);
+			points_free(&p);
+			unmake(&m);
+		}
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(
+			circles_of_less_than_a_pulse_are_no_segment),
 		cmocka_unit_test(full_circles_follow_within_a_pulse_of_the_smaller),
 		cmocka_unit_test(every_start_quadrant_and_both_ways_round),
 		cmocka_unit_test(ratios_to_a_thousand_to_one),

@@ -147,7 +147,11 @@ int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	if (err == 0 && plan.near_edge)
 		err = build_edge_look(b, &(struct build_edge) {
 				      .pair = &plan, .word = w }, diag);
-	if (err == 0)
+	/* Two circles of less than a pulse go nowhere, as a line without
+	 * length. */
+	if (err == 0 && plan.ticks == 0)
+		build_stand_at(b, end_mm, to);
+	else if (err == 0)
 		err = build_pair_add(b, &plan, w, diag);
 	free(plan.bits);
 	return err;

@@ -188,7 +188,8 @@ struct interp_build_contour {
  * Each goes from where its axes stand to their places in @end_mm.  No other
  * axis may move.  They are walked together: two arcs of the same sense, phase
  * and sweep by their angle, all others by their shares of the length.  If only
- * one of them moves, it becomes a simple line or arc.
+ * one of them moves, it becomes a simple line or arc; if
+ * neither comes to another pulse, they are dropped.
  */
 int interp_build_pair(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		      const struct interp_build_contour contour[2],
