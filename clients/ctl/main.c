@@ -50,7 +50,7 @@ static int take_every(void *to, const char *word)
 
 	if (end == word || *end || n < 1 || n > 1000000)
 		return cmdline_refuse("edmctl", "--every", word,
-				      "a whole number of cycles, 1 to 1000000");
+				      "a whole number, 1 to 1000000");
 	c->every = (unsigned int)n;
 	return -1;
 }
@@ -133,6 +133,8 @@ static const struct verb verbs[] = {
 	{ "offset", "[G54 X=0|X@0|Z=probe|clear ...]", ctl_offset,
 	  CTL_WORDS_MAX - 1, 0, false, "",
 	  "print the work offsets; touch off an axis, or feel for it" },
+	{ "generator", "[set FIELD VALUE|walk]", ctl_generator, 3, 0, false,
+	  "every", "what the generator is asked for and tells; try it" },
 	{ "new-machine", "FILE", ctl_new_machine, 1, 1, true, "",
 	  "ask a few questions, and write a machine file" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "plot",
@@ -177,7 +179,8 @@ static const struct cmdline_row rows[] = {
 	{ "line", NULL, CMDLINE_FLAG, AT(in_line), .help =
 	  "watch: one line, not the whole terminal" },
 	{ "every", "N", CMDLINE_CALL, .take = take_every, .help =
-	  "record: write one cycle of N; default: 1" },
+	  "record: write one cycle of N; default: 1\n"
+	  "generator walk: each Nth step; default: up to 128 of a field" },
 	{ "plot", "FILE", CMDLINE_WORD, AT(plot), .help =
 	  "record, identify: draw the result, .png or .svg" },
 	{ "pulses", "CHIP:LINE", CMDLINE_WORD, AT(pulses), .help =

@@ -448,6 +448,13 @@ bool config_generator_limits(const struct machine_config *c);
 /** config_generator_interface() - enum config_interface, never AUTO. */
 int config_generator_interface(const struct machine_config *c);
 
+/** config_interface_word() - of enum config_interface; NULL: no such one. */
+const char *config_interface_word(int interface);
+
+/** config_way_word() - the first word of a way of this kind; "own": the
+ *  machine's backend does it. */
+const char *config_way_word(enum config_way_kind kind);
+
 /** config_generator_frames() - how many kinds of its frames are on the CAN
  *  interface @name, from it and to it. */
 uint32_t config_generator_frames(const struct machine_config *c,

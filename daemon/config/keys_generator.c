@@ -4,7 +4,7 @@
  */
 #include "keys_rows.h"
 
-static const char *interface_word(int i)
+const char *config_interface_word(int i)
 {
 	static const char *const words[] = {
 		"auto", "sim", "none", "lines", "can"
@@ -24,7 +24,7 @@ static const char *interface_word(int i)
 /* clang-format off */
 static const struct config_key row[] = {
 	WORDS(GENERATOR, "interface", "auto", AT(generator.interface),
-	      interface_word,
+	      config_interface_word,
 	      "how it is reached; auto: sim with backend sim, else none"),
 	NAME(GENERATOR, "can_interface", "can0", generator.can_interface,
 	     "network interface of its bus"),

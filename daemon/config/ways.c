@@ -11,6 +11,16 @@
 
 #define NATURAL_BITS	16
 
+const char *config_way_word(enum config_way_kind kind)
+{
+	static const char *const words[] = {
+		[WAY_NONE] = "none", [WAY_OWN] = "own", [WAY_CAN] = "can",
+		[WAY_LINES] = "lines",
+	};
+
+	return words[kind];
+}
+
 struct words {
 	const char *at;
 	char word[CONFIG_WAY_WORD];

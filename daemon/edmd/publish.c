@@ -29,6 +29,7 @@ SAME(SHM_PROBE, STATE_PROBE);
 SAME(SHM_PROBE + 1, CYCLE_NSTATES);
 SAME(SHM_NAXES, INTERP_NAXES);
 SAME(SHM_NAXES, IO_NAXES);
+SAME(SHM_NGENERATOR, INTERP_NGENERATOR);
 SAME(SHM_SETS_MAX, CONDITIONS_SETS_MAX);
 SAME(SHM_DONE, ANSWER_DONE);
 SAME(SHM_NO_PROGRAM, ANSWER_NO_PROGRAM);
@@ -287,6 +288,16 @@ static void snapshot_stand_now(const struct loop *l, struct shm_snapshot *s)
 	s->stand_cycles = now.why ? l->cycle.count - l->told.stood : 0;
 }
 
+static void snapshot_generator(const struct cycle *c, struct shm_snapshot *s)
+{
+	const struct asking *a = &c->asking;
+
+	memcpy(s->asked, a->now, sizeof(s->asked));
+	memcpy(s->told, a->says.told, sizeof(s->told));
+	s->tells = a->says.tells;
+	s->has_asked = a->has;
+}
+
 static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
 {
 	const struct cycle_totals *t = &c->totals;
@@ -347,6 +358,7 @@ void loop_snapshot(const struct loop *l, struct shm_snapshot *ret)
 	snapshot_probe(c, ret);
 	snapshot_stand(l, ret);
 	snapshot_stand_now(l, ret);
+	snapshot_generator(c, ret);
 	snapshot_sums(c, ret);
 	snapshot_timing(l, ret);
 }

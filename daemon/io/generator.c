@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 #define REFRESH_S	2e-3
@@ -129,6 +130,7 @@ static void generator_read(void *self, struct io_inputs *in)
 	if (g->fd >= 0)
 		generator_can_read(g);
 	look(g);
+	memcpy(g->says.told, g->heard, sizeof(g->says.told));
 	in->generator = g->says;
 	/* Where the bus is the drives' too, it is their trouble. */
 	in->generator.trouble = g->says.trouble || (g->down && !g->ill);
@@ -146,8 +148,10 @@ uint32_t generator_code(const struct config_way *w, double value)
 
 static void take(struct generator *g, const struct io_outputs *out)
 {
-	if (out->asked != g->asked)
+	if (out->asked != g->asked) {
 		g->waited = 0;
+		g->says.trouble = false;	/* it is judged anew */
+	}
 	g->asked = out->asked;
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		g->value[i] = out->pulse[i];
@@ -232,6 +236,7 @@ struct generator *generator_attach(struct io_machine *m,
 	}
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
 		config_way(c, i, true, &g->told[i]);
+		g->says.tells |= tells(g, i) ? 1u << i : 0;
 		g->heard[i] = (double)NAN;
 	}
 	if (fd >= 0)

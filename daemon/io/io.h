@@ -57,7 +57,12 @@ struct io_plc {
 struct io_generator {
 	uint32_t in_force;		/* io_outputs.asked that is; counts if
 					 * it can tell */
-	bool trouble;			/* until a reset */
+	bool trouble;			/* until a reset, or until something
+					 * else is asked */
+	uint32_t tells;			/* a bit per field of pulse whose value
+					 * it tells */
+	double told[INTERP_NGENERATOR];	/* ... which is this; NAN: nothing was
+					 * heard yet */
 };
 
 /* What the machine says, once a period. */

@@ -72,6 +72,16 @@ void verbs_settle(struct jobs *j, const struct verb *v,
 void verbs_await(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
 
+/* -- verbs_generator.c -- */
+
+/** verbs_generator() - the verb "generator": each value, asked and told. */
+void verbs_generator(struct jobs *j, const struct verb *v,
+		     const struct jobs_lcm_command *c);
+
+/** verbs_generator_field() - the field that @c tries; INTERP_NGENERATOR: all
+ *  of them.  Return: -1 if it was refused. */
+int verbs_generator_field(struct jobs *j, const struct jobs_lcm_command *c);
+
 /* -- verbs_queue.c: functions of rows -- */
 
 void verbs_remove(struct jobs *j, const struct verb *v,

@@ -403,6 +403,16 @@ static void verb_set(struct jobs *j, const struct verb *v,
 	verbs_answer(j, c, EX_DATAERR, reason);
 }
 
+/* NaN takes back; without a field, all of them. */
+static void verb_generator_set(struct jobs *j, const struct verb *v,
+			       const struct jobs_lcm_command *c)
+{
+	const int field = verbs_generator_field(j, c);
+
+	if (field >= 0)
+		ask_machine(j, v, c, (uint32_t)field);
+}
+
 static void verb_retract(struct jobs *j, const struct verb *v,
 			 const struct jobs_lcm_command *c)
 {
@@ -668,6 +678,9 @@ static const struct verb verbs[] = {
 	  "it idle: no job loaded, no fault" },
 	{ "override", ROLE_OPERATOR, VERB_ACTS, verb_override,
 	  SHM_DO_OVERRIDE, "nothing" },
+	{ "generator", ROLE_VIEWER, VERB_ASKS, verbs_generator, VERB_OWN, "" },
+	{ "generator-set", ROLE_OPERATOR, VERB_ACTS, verb_generator_set,
+	  SHM_DO_TRY, "it idle, without sparks: no job loaded, no fault" },
 	{ "remove", ROLE_OPERATOR, VERB_ENDS, verbs_remove, VERB_OWN, "" },
 	{ "move", ROLE_OPERATOR, VERB_ACTS, verbs_move, VERB_OWN, "" },
 	{ "text", ROLE_VIEWER, VERB_ASKS, verbs_text, VERB_OWN, "" },

@@ -220,6 +220,15 @@ static enum cycle_answer do_set(struct cycle *c, const struct cycle_command *m)
 	return answer[conditions_set(c, m->arg, m->arg_mm)];
 }
 
+/* There are no sparks, and none can begin while it is tried. */
+static enum cycle_answer do_try(struct cycle *c, const struct cycle_command *m)
+{
+	if (c->loaded || c->state != STATE_IDLE)
+		return ANSWER_WRONG_STATE;
+	return asking_try(c, m->arg, m->arg_mm) ? ANSWER_DONE :
+						  ANSWER_BAD_ARGUMENT;
+}
+
 static enum cycle_answer do_manual(struct cycle *c,
 				    const struct cycle_command *m)
 {
@@ -265,6 +274,8 @@ enum cycle_answer cycle_command(struct cycle *c, const struct cycle_command *m)
 		return do_press(c, m);
 	if (m->verb == CYCLE_SET)
 		return do_set(c, m);
+	if (m->verb == CYCLE_TRY)
+		return do_try(c, m);
 	if (m->verb == CYCLE_JOG || m->verb == CYCLE_HOME)
 		return do_manual(c, m);
 	return verbs[m->verb](c, m->arg_mm);
@@ -281,6 +292,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->escape = (struct escape) { .nlegs = 0 };
 	if (!conditions_begin(c))
 		return ANSWER_BAD_ARGUMENT;
+	asking_try(c, INTERP_NGENERATOR, (double)NAN);
 	c->out.path++;
 	c->loaded = true;
 	stand_end(c);

@@ -50,8 +50,9 @@
 #include <ck_ring.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	11
+#define SHM_LAYOUT	12
 #define SHM_NAXES	8		/* X Y Z A B C U V */
+#define SHM_NGENERATOR	6		/* values of a generator */
 #define SHM_NAME_MAX	32
 #define SHM_PATH_MAX	96
 
@@ -169,6 +170,13 @@ struct shm_snapshot {
 	uint32_t kept_stand, kept_of;	/* the same of the job, also while a
 					 * fault is latched */
 	uint64_t stand_cycles;		/* how long */
+	/* By enum interp_tech_id: what the generator is asked for, NAN: its own
+	 * setting; what it tells, NAN: nothing yet; a bit of each that it
+	 * tells. */
+	double asked[SHM_NGENERATOR], told[SHM_NGENERATOR];
+	uint32_t tells;
+	bool has_asked;			/* it has all of it, as far as it tells;
+					 * else for its settle_ms */
 };
 
 /* What SHM_DO_SET has set in a job; written when it changes. */

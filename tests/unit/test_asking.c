@@ -340,6 +340,80 @@ static void a_set_that_does_not_reach_the_generator_is_refused(void **state)
 	rig_free(&r);
 }
 
+static enum cycle_answer try_it(struct rig *r, uint32_t field, double value)
+{
+	return cycle_command(&r->c, &(struct cycle_command) {
+		.verb = CYCLE_TRY, .arg = field, .arg_mm = value });
+}
+
+static void end_the_job(struct rig *r)
+{
+	assert_int_equal(tell(r, CYCLE_STOP), ANSWER_DONE);
+	for (int i = 0; r->c.loaded && i < 3000; i++)
+		step(r, OPEN_V);
+	assert_false(r->c.loaded);
+	steps(r, OPEN_V, 2);
+}
+
+static void it_is_tried_without_a_job_and_never_with_one(void **state)
+{
+	struct cycle_config k = limited_config(true);
+	double before[INTERP_NGENERATOR];
+	struct rig r;
+
+	(void)state;
+	k.asking.field[INTERP_TECH_OFF_US].by_hand = true;
+	rig_conds(&r, &k, 1, 2);
+	assert_int_equal(try_it(&r, INTERP_TECH_PEAK_A, 6),
+			 ANSWER_WRONG_STATE);
+	end_the_job(&r);
+	memcpy(before, r.out.pulse, sizeof(before));
+	assert_int_equal(try_it(&r, INTERP_TECH_PEAK_A, 22),
+			 ANSWER_BAD_ARGUMENT);
+	assert_int_equal(try_it(&r, INTERP_TECH_OFF_US, 20),
+			 ANSWER_BAD_ARGUMENT);
+	assert_int_equal(try_it(&r, INTERP_TECH_IGNITION_V, 180),
+			 ANSWER_BAD_ARGUMENT);
+	assert_int_equal(try_it(&r, INTERP_TECH_PEAK_A, 12), ANSWER_DONE);
+	assert_int_equal(try_it(&r, INTERP_TECH_POLARITY, -1), ANSWER_DONE);
+	steps(&r, SPARKING_V, DARK + 1);
+	assert_true(r.out.pulse[INTERP_TECH_PEAK_A] == 12);
+	assert_true(r.out.pulse[INTERP_TECH_POLARITY] == -1);
+	assert_false(r.out.power || r.c.asking.has);
+	r.in.generator.in_force = r.out.asked;
+	step(&r, SPARKING_V);
+	assert_true(r.c.asking.has);
+	assert_false(r.out.power);
+	assert_int_equal(try_it(&r, INTERP_NGENERATOR, NAN), ANSWER_DONE);
+	steps(&r, SPARKING_V, DARK + 1);
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		assert_true(same(r.out.pulse[i], before[i]));
+	rig_free(&r);
+}
+
+static void a_job_takes_back_what_was_tried(void **state)
+{
+	struct cycle_config k = limited_config(true);
+	struct slow g = slow_of(1, 3);
+	struct rig r;
+
+	(void)state;
+	rig_conds(&r, &k, 1, 2);
+	end_the_job(&r);
+	assert_int_equal(try_it(&r, INTERP_TECH_PEAK_A, 21), ANSWER_DONE);
+	assert_int_equal(try_it(&r, INTERP_TECH_OFF_US, 900), ANSWER_DONE);
+	for (int i = 0; i < 10; i++)
+		period(&r, &g, OPEN_V);
+	assert_true(g.now[INTERP_TECH_PEAK_A] == 21);
+	assert_int_equal(cycle_load(&r.c, &r.c.cursor.p), ANSWER_DONE);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	while (!r.out.power)
+		period(&r, &g, SPARKING_V);
+	assert_true(g.now[INTERP_TECH_PEAK_A] == 6);
+	assert_true(isnan(g.now[INTERP_TECH_OFF_US]));
+	rig_free(&r);
+}
+
 /* 20 us and up to three times as much; the generator ends at 40. */
 static void steps_against_arcs_are_those_that_reach_the_generator(void **state)
 {
@@ -392,6 +466,8 @@ int main(void)
 		cmocka_unit_test(trouble_ends_the_sparks_in_its_period),
 		cmocka_unit_test(what_a_person_sets_is_asked_for_at_each_change),
 		cmocka_unit_test(a_set_that_does_not_reach_the_generator_is_refused),
+		cmocka_unit_test(it_is_tried_without_a_job_and_never_with_one),
+		cmocka_unit_test(a_job_takes_back_what_was_tried),
 		cmocka_unit_test(steps_against_arcs_are_those_that_reach_the_generator),
 		cmocka_unit_test(the_nearest_current_is_not_above_what_was_asked),
 	};

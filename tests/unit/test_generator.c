@@ -263,6 +263,32 @@ static void one_that_restarts_is_trouble(void **state)
 	unmake(&r);
 }
 
+static void what_is_asked_anew_is_judged_anew(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r, tells);
+	ask(&r, 6);
+	period(&r);
+	tell(&r, 12, false);
+	period(&r);
+	tell(&r, 24, false);
+	period(&r);
+	assert_true(r.in.generator.trouble);
+	assert_int_equal(r.in.generator.tells, 1u << INTERP_TECH_PEAK_A |
+			 1u << INTERP_TECH_POLARITY);
+	assert_true(r.in.generator.told[INTERP_TECH_PEAK_A] == 12);
+	ask(&r, 12);
+	tell(&r, 24, false);
+	period(&r);
+	tell(&r, 24, false);
+	period(&r);
+	assert_false(r.in.generator.trouble);
+	assert_int_equal(r.in.generator.in_force, r.out.asked);
+	unmake(&r);
+}
+
 /* -- What of a condition is delivered -------------------------------------- */
 
 #define GAP_LINES_TEXT	"[machine]\nbackend = gpio\nperiod_us = 200\n" \
@@ -362,6 +388,7 @@ int main(void)
 		cmocka_unit_test(one_that_refuses_is_trouble_in_confirm_s),
 		cmocka_unit_test(one_that_is_silent_is_trouble_in_silent_ms),
 		cmocka_unit_test(one_that_restarts_is_trouble),
+		cmocka_unit_test(what_is_asked_anew_is_judged_anew),
 		cmocka_unit_test(each_field_reaches_it_or_is_refused),
 		cmocka_unit_test(lines_have_the_code_of_the_value),
 	};

@@ -15,13 +15,21 @@ void asking_init(struct asking *a)
 {
 	*a = (struct asking) { .in_force = true };
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
-		a->now[i] = a->place[i] = a->hand[i] = (double)NAN;
+		a->now[i] = a->place[i] = a->hand[i] = a->tried[i] =
+			(double)NAN;
 }
 
-/* What the place asks for, as the generator can do it. */
+/* What the place asks for, or who tries the generator. */
+static double asked_for(const struct cycle *c, int i)
+{
+	return isnan(c->asking.tried[i]) ? c->out.pulse[i] :
+					   c->asking.tried[i];
+}
+
+/* ... as the generator can do it. */
 static double wanted(const struct cycle *c, int i)
 {
-	return process_nearest(&c->config.asking.field[i], i, c->out.pulse[i]);
+	return process_nearest(&c->config.asking.field[i], i, asked_for(c, i));
 }
 
 double asking_off_us(const struct cycle *c, double off_us)
@@ -42,6 +50,23 @@ bool asking_takes(const struct cycle *c, uint32_t field, double value)
 	    (field == INTERP_TECH_POLARITY && value > 0))
 		return true;
 	return !isnan(process_nearest(&k->field[field], (int)field, value));
+}
+
+bool asking_try(struct cycle *c, uint32_t field, double value)
+{
+	const struct process_delivers *d = &c->config.asking.field[field];
+	struct asking *a = &c->asking;
+
+	if (field >= INTERP_NGENERATOR) {
+		for (int i = 0; i < INTERP_NGENERATOR; i++)
+			a->tried[i] = (double)NAN;
+		return isnan(value);
+	}
+	if (!isnan(value) && (d->by_hand ||
+			      isnan(process_nearest(d, (int)field, value))))
+		return false;
+	a->tried[field] = value;
+	return true;
 }
 
 /* -- What a person sets ---------------------------------------------------- */
@@ -129,6 +154,8 @@ static void ask(struct cycle *c)
 		a->needed = ++a->version;
 		a->age = 0;
 	}
+	if (!isnan(a->tried[INTERP_TECH_OFF_US]))
+		return;
 	off_us = asking_off_us(c, arcing_off_us(c));
 	if (same(off_us, a->now[INTERP_TECH_OFF_US]))
 		return;
@@ -136,31 +163,54 @@ static void ask(struct cycle *c)
 	a->version++;
 }
 
-static bool is_confirmed(const struct cycle *c, const struct io_inputs *in)
+static bool is_confirmed(const struct cycle *c, uint32_t version)
 {
 	const struct asking *a = &c->asking;
 
 	return c->config.asking.answers ?
-	       (int32_t)(in->generator.in_force - a->needed) >= 0 :
-	       a->age > c->config.asking.settle_cycles || a->needed == 0;
+	       (int32_t)(a->says.in_force - version) >= 0 :
+	       a->age > c->config.asking.settle_cycles || version == 0;
+}
+
+/* Whatever is asked for is in force at once, and yet each change of it has its
+ * version. */
+static void ask_freely(struct cycle *c)
+{
+	struct asking *a = &c->asking;
+	double now[INTERP_NGENERATOR];
+
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		now[i] = asked_for(c, i);
+	if (isnan(a->tried[INTERP_TECH_OFF_US]))
+		now[INTERP_TECH_OFF_US] = arcing_off_us(c);
+	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+		if (same(a->now[i], now[i]))
+			continue;
+		a->now[i] = now[i];
+		a->version++;
+		a->age = 0;
+	}
 }
 
 void asking_step(struct cycle *c, const struct io_inputs *in)
 {
 	struct asking *a = &c->asking;
 
+	a->says = in->generator;
+	a->age++;
 	if (!c->config.asking.limited) {
-		memcpy(a->now, c->out.pulse, sizeof(a->now));
-		a->now[INTERP_TECH_OFF_US] = arcing_off_us(c);
+		ask_freely(c);
+		a->has = is_confirmed(c, a->version);
 		return;
 	}
 	hear_hand(c);
 	a->dark = c->out.power ? 0 : a->dark + 1;
-	a->age++;
 	/* Where these end, nothing may have changed. */
 	if (c->state != STATE_JUMP && c->state != STATE_RETRACT)
 		ask(c);
-	a->in_force = is_the_places(c) && !unset(c) && is_confirmed(c, in);
+	a->in_force = is_the_places(c) && !unset(c) &&
+		      is_confirmed(c, a->needed);
+	a->has = is_the_places(c) && is_confirmed(c, a->version);
 }
 
 bool asking_waits(const struct cycle *c)

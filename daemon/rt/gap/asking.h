@@ -13,6 +13,9 @@
  * A field that a person sets makes the job stand where it changes.  The start
  * that follows says that it is set.
  *
+ * Without a job, values may be asked for to try the generator.  A job takes
+ * them back.
+ *
  * Threads: RT-safe.
  */
 #ifndef RT_ASKING_H
@@ -44,6 +47,9 @@ struct asking {
 	uint32_t stands;		/* ... or is to set, a bit of each: it
 					 * stands */
 	uint32_t path;			/* io_outputs.path of these */
+	double tried[INTERP_NGENERATOR];	/* without a job; NAN: not */
+	struct io_generator says;	/* in the last period */
+	bool has;			/* the generator has all of `now` */
 };
 
 /** asking_init() - nothing is asked yet. */
@@ -61,6 +67,13 @@ bool asking_hand(struct cycle *c);
 
 /** asking_takes() - can field @field be @value? */
 bool asking_takes(const struct cycle *c, uint32_t field, double value);
+
+/**
+ * asking_try() - without a job, ask for @value of field @field; NAN: no more.
+ * A @field beyond the last one is all of them.
+ * Return: false if it cannot be asked for.
+ */
+bool asking_try(struct cycle *c, uint32_t field, double value);
 
 /** asking_off_us() - the off time that comes of asking for @off_us; NAN: it
  *  cannot be asked for. */
