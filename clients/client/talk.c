@@ -47,9 +47,8 @@ struct question {
 	double arg, until_s, sent_s, begun_s;
 	talk_answer_fn fn;
 	void *arg_fn;
-	int stop;			/* talk_stop_take(); -1: none */
+	struct talk_stop stop;
 	bool ended;			/* edmd itself has done it */
-	int code;			/* its answer */
 };
 
 struct listener {
@@ -226,9 +225,8 @@ static void question_end(struct question *q, int err,
 	free(q->verb);
 	free(q->job);
 	free(q->text);
-	if (q->stop >= 0)
-		close(q->stop);
-	*q = (struct question) { .seq = 0, .stop = -1 };
+	talk_stop_end(&q->stop);
+	*q = (struct question) { .seq = 0 };
 	if (was.fn)
 		was.fn(was.arg_fn, err, a);
 }
@@ -421,8 +419,6 @@ int talk_open(struct talk **ret, const struct talk_options *o,
 	int err = t && sodium_init() >= 0 ? 0 : -ENOMEM;
 
 	snprintf(said, TALK_SAID_MAX, "out of memory");
-	for (int i = 0; t && i < TALK_QUESTIONS; i++)
-		t->question[i].stop = -1;
 	if (err == 0) {
 		t->is_here = !o->url;
 		snprintf(t->machine, sizeof(t->machine), "%s",
@@ -474,11 +470,10 @@ const char *talk_why(const struct talk *t)
  * knows of jobs that edmd does not. */
 static void stop_turn(struct question *q, double now_s)
 {
-	const int got = q->stop >= 0 ? talk_stop_take(q->stop, &q->code) : 0;
+	int code;
 
-	if (got != 0)
-		q->stop = -1;
-	q->ended = q->ended || (got > 0 && q->code == 0);
+	if (talk_stop_turn(&q->stop, &code))
+		q->ended = code == 0;
 	if (!q->ended || now_s < q->begun_s + ALONE_S)
 		return;
 	question_end(q, 0, &(struct talk_ack) {
@@ -562,7 +557,7 @@ int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
 		.verb = strdup(q->verb), .job = strdup(q->job ? q->job : ""),
 		.text = strdup(q->text ? q->text : ""),
 		.begun_s = talk_now_s(),
-		.until_s = talk_now_s() + timeout_s, .stop = -1,
+		.until_s = talk_now_s() + timeout_s,
 	};
 	if (!room->verb || !room->job || !room->text) {
 		room->fn = NULL;
@@ -572,9 +567,9 @@ int talk_send(struct talk *t, const struct talk_question *q, double timeout_s,
 	/* Whose key may only look does not ask edmd past it. */
 	if (t->is_here && talk_stop_is(q->verb) &&
 	    strcmp(t->key.role, "viewer") != 0)
-		room->stop = talk_stop_send(t->machine, q->verb,
-					    seal_act_id(t->key.public,
-							t->client, room->seq));
+		talk_stop_begin(&room->stop, t->machine, q->verb,
+				seal_act_id(t->key.public, t->client,
+					    room->seq));
 	if (t->known)
 		send_question(t, room);
 	return 0;
@@ -634,7 +629,7 @@ int talk_ask(struct talk *t, const struct talk_question *q, double timeout_s,
 
 	while (err == 0 && !asking.over && !interrupted &&
 	       !is_turned_away(t, &asking))
-		talk_wait(t, 50);
+		talk_wait(t, TALK_TURN_MS);
 	if (err == 0 && !asking.over) {
 		struct question *left = question_find(t, seq);
 

@@ -36,6 +36,8 @@
 #define TALK_FAULTS_MAX	512		/* all of them at once */
 #define TALK_SAID_MAX	(KEYFILE_SAID_MAX + 64)
 #define TALK_QUESTIONS	16		/* under way at once */
+#define TALK_TURN_MS	10		/* wait no longer between two turns
+					 * while an act is under way */
 
 struct talk;
 

@@ -8,9 +8,12 @@
 #include <errno.h>
 #include <poll.h>
 #include <sodium.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#define AGAIN_S		0.01		/* between two tries */
 
 #define NAME(verb, name)	name,
 static const char *const names[] = { STOP_ACT_ROWS(NAME) };
@@ -38,52 +41,81 @@ static int connect_to(const char *machine)
 	return err < 0 ? err : places_connect(&at, PLACES_EDMD);
 }
 
-int talk_stop_send(const char *machine, const char *verb, uint64_t id)
+/* Return: -1: it does not take it now. */
+static int give(struct talk_stop *s)
 {
-	const int v = verb_of(verb), fd = v < 0 ? -EINVAL : connect_to(machine);
+	const int fd = connect_to(s->machine);
 	const struct stop_act a = {
-		.magic = STOP_ACT_MAGIC, .verb = (uint32_t)v, .id = id,
+		.magic = STOP_ACT_MAGIC, .verb = s->verb, .id = s->id,
 	};
-	int err;
 
+	s->tried_s = talk_now_s();
 	if (fd < 0 || send(fd, &a, sizeof(a), MSG_NOSIGNAL) == sizeof(a))
-		return fd;
-	err = -errno;
+		return fd < 0 ? -1 : fd;
 	close(fd);
-	return err;
+	return -1;
 }
 
-int talk_stop_take(int fd, int *ret_code)
+void talk_stop_begin(struct talk_stop *s, const char *machine,
+		     const char *verb, uint64_t id)
+{
+	*s = (struct talk_stop) { .verb = (uint32_t)verb_of(verb), .id = id };
+	snprintf(s->machine, sizeof(s->machine), "%s", machine);
+	s->fd = give(s);
+}
+
+void talk_stop_end(struct talk_stop *s)
+{
+	if (s->id && s->fd >= 0)
+		close(s->fd);
+	s->id = 0;
+}
+
+bool talk_stop_turn(struct talk_stop *s, int *ret_code)
 {
 	struct stop_answer a;
-	const ssize_t n = recv(fd, &a, sizeof(a), MSG_TRUNC);
+	ssize_t n;
 
+	if (!s->id)
+		return false;
+	if (s->fd < 0) {
+		if (talk_now_s() - s->tried_s >= AGAIN_S)
+			s->fd = give(s);
+		return false;
+	}
+	n = recv(s->fd, &a, sizeof(a), MSG_TRUNC);
 	if (n < 0 && (errno == EAGAIN || errno == EINTR))
-		return 0;
-	close(fd);
-	if (n != sizeof(a) || a.magic != STOP_ACT_MAGIC)
-		return -ENOTCONN;
-	*ret_code = a.code;
-	return 1;
+		return false;
+	if (n == sizeof(a) && a.magic == STOP_ACT_MAGIC) {
+		*ret_code = a.code;
+		talk_stop_end(s);
+		return true;
+	}
+	close(s->fd);
+	s->fd = -1;
+	return false;
 }
 
 int talk_stop_ask(const char *machine, const char *verb, double timeout_s,
 		  struct talk_answer *ret)
 {
+	const double until_s = talk_now_s() + timeout_s;
+	struct talk_stop s;
 	uint64_t id;
-	struct pollfd p = { .events = POLLIN };
-	int code, got;
+	int code = 0;
+	bool got;
 
 	randombytes_buf(&id, sizeof(id));
-	p.fd = talk_stop_send(machine, verb, id >> 1 | 1);
-	if (p.fd < 0)
-		return p.fd;
-	poll(&p, 1, (int)(timeout_s * 1e3));
-	got = talk_stop_take(p.fd, &code);
-	if (got == 0)
-		close(p.fd);
-	if (got <= 0)
-		return got < 0 ? got : -ETIMEDOUT;
+	talk_stop_begin(&s, machine, verb, id >> 1 | 1);
+	while (!(got = talk_stop_turn(&s, &code)) && talk_now_s() < until_s &&
+	       !talk_interrupted()) {
+		struct pollfd p = { .fd = s.fd, .events = POLLIN };
+
+		poll(&p, 1, TALK_TURN_MS);
+	}
+	talk_stop_end(&s);
+	if (!got)
+		return talk_interrupted() ? -EINTR : -ETIMEDOUT;
 	if (code != 0)
 		return -ECANCELED;
 	return talk_answer_copy(ret, &(struct talk_ack) {

@@ -16,19 +16,32 @@
 /** talk_stop_is() - does the verb end motion? */
 bool talk_stop_is(const char *verb);
 
-/**
- * talk_stop_send() - give the act to edmd; it does not wait.
- * Return: a descriptor for talk_stop_take(); -EINVAL: not such a verb; else
- * -errno: edmd does not take it.
- */
-int talk_stop_send(const char *machine, const char *verb, uint64_t id);
+/* An act on its way to edmd; all 0: none. */
+struct talk_stop {
+	char machine[32];
+	uint32_t verb;			/* enum stop_act_verb */
+	uint64_t id;			/* 0: answered, or none */
+	int fd;				/* -1: edmd does not take it now */
+	double tried_s;
+};
 
 /**
- * talk_stop_take() - the answer, if it is there; then @fd is closed.
- * Return: 1 with @ret_code filled, 0: done; 0: not yet; -ENOTCONN: it was not
- * answered.
+ * talk_stop_begin() - give the act to edmd; it does not wait.
+ * @verb: one for which talk_stop_is() is true.
  */
-int talk_stop_take(int fd, int *ret_code);
+void talk_stop_begin(struct talk_stop *s, const char *machine,
+		     const char *verb, uint64_t id);
+
+/**
+ * talk_stop_turn() - the answer, if it is there.  An act that edmd did not take
+ * because many others asked at that moment or because it was just starting, is
+ * given to it again; by its id it is done once.  Call it every few ms.
+ * Return: has it been answered?  Then @ret_code is filled, 0: done.
+ */
+bool talk_stop_turn(struct talk_stop *s, int *ret_code);
+
+/** talk_stop_end() - wait for the answer no more. */
+void talk_stop_end(struct talk_stop *s);
 
 /* What to tell of an act that only edmd has answered. */
 #define TALK_STOP_DONE "done by edmd itself; edmd-jobs does not answer: " \
@@ -36,8 +49,8 @@ int talk_stop_take(int fd, int *ret_code);
 
 /**
  * talk_stop_ask() - the same without a struct talk, and wait for the answer.
- * Return: 0: done; -ECANCELED: nothing moves that it would end; -ETIMEDOUT; as
- * talk_stop_send(); -ENOMEM.
+ * Return: 0: done; -ECANCELED: nothing moves that it would end; -ETIMEDOUT;
+ * -EINTR; -ENOMEM.
  */
 int talk_stop_ask(const char *machine, const char *verb, double timeout_s,
 		  struct talk_answer *ret);

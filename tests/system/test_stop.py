@@ -5,9 +5,12 @@ acts that end motion go to edmd itself, too."""
 import os
 import pathlib
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import textwrap
+import threading
 
 import panel
 import pytest
@@ -167,3 +170,74 @@ def test_every_thread_has_a_name(machine):
             (machine.jobs, {"edmd-jobs", "jobs-checkpoint", "log"})):
         threads = pathlib.Path(f"/proc/{program.pid}/task").glob("*/comm")
         assert {t.read_text().strip() for t in threads} == names
+
+
+class Deaf:
+    """Listens where an edmd does, and takes the @nth act that is sent to it; the
+    others it drops, as one whose places are full of others' connections."""
+
+    def __init__(self, machine, nth):
+        self.path = f"/dev/shm/edmd.{machine}.stop"
+        self.acts = []
+        self.nth = nth
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.socket.bind(self.path)
+        self.socket.listen(0)
+        self.thread = threading.Thread(target=self.run)
+        self.thread.start()
+
+    def run(self):
+        while len(self.acts) < self.nth:
+            end, _ = self.socket.accept()
+            end.settimeout(60)
+            with end:
+                self.acts.append(end.recv(64))
+                if len(self.acts) == self.nth:
+                    magic, _, number = struct.unpack("=IIQ", self.acts[-1])
+                    end.send(struct.pack("=IiQ", magic, 0, number))
+                    end.recv(1)     # the other side closes
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        os.unlink(self.path)
+        if self.thread.is_alive():  # a test that fails
+            self.nth = 0
+            socket.socket.shutdown(self.socket, socket.SHUT_RDWR)
+        self.thread.join()
+        self.socket.close()
+
+
+@pytest.mark.parametrize("key", [True, False])
+def test_an_act_that_edmd_dropped_is_given_to_it_again(machine, key):
+    """Others may connect so often that an act finds no room at first."""
+    m = machine
+    name = f"{m.name}-deaf"
+    argv = [str(BUILD / "edmctl"), "--machine", name, "--timeout", "30",
+            "estop"]
+    if key:
+        m.ctl("keys", "add", "hand", "operator", cwd=m.folder)
+        text = (m.folder / "hand.key").read_text().replace(m.name, name)
+        (m.folder / "deaf.key").write_text(text)
+        (m.folder / "deaf.key").chmod(0o600)
+        argv[1:1] = ["--key", str(m.folder / "deaf.key")]
+    with Deaf(name, 5) as deaf:
+        p = subprocess.run(argv, capture_output=True, text=True, timeout=120)
+    assert p.returncode == 0, p.stderr
+    assert "done by edmd itself" in p.stdout
+    assert len(deaf.acts) == 5 and len(set(deaf.acts)) == 1
+
+
+def test_an_act_waits_for_an_edmd_that_starts(machine):
+    m = machine
+    m.jobs.send_signal(signal.SIGSTOP)
+    m.kill("edmd")
+    p = subprocess.Popen([str(BUILD / "edmctl"), "--machine", m.name,
+                          "--timeout", "60", "estop"], stdout=subprocess.PIPE,
+                         text=True)
+    m.start_edmd()
+    assert "done by edmd itself" in p.communicate(timeout=120)[0]
+    assert p.returncode == 0
+    m.jobs.send_signal(signal.SIGCONT)
+    m.client.status_where(lambda s: s.fault == "e-stop", 20)
