@@ -212,9 +212,64 @@ static void nodes_ask_of_no_axis_more_than_it_can_do(void **st)
 	}
 }
 
+/* Lines so short that a smooth curve through them ends another way than the
+ * last of them; an axis that they turn stands on the arc behind them. */
+static struct made run_onto_arc(void)
+{
+	static const double by[][3] = {		/* X, Y, C */
+		{ 8, 0, 0 }, { 0.0042, 0, -0.0401 }, { 0.1666, -0.0086, -0.6146 },
+	};
+	const struct interp_build_options o = {
+		.machine = &axes_machine, .strategy = INTERP_SIMULTANEOUS,
+	};
+	const struct interp_build_word w = {
+		.line = 1, .feed_mm_s = 60, .rapid = true,
+	};
+	struct interp_build *b = interp_build_create(&o);
+	struct interp_build_arc a = {
+		.axis_a = INTERP_X, .axis_b = INTERP_Y, .sweep = M_PI / 2,
+	};
+	double end[INTERP_NAXES];
+	struct interp_diag d;
+
+	memcpy(end, interp_build_here(b), sizeof(end));
+	for (size_t i = 0; i < sizeof(by) / sizeof(by[0]); i++) {
+		end[INTERP_X] += by[i][0];
+		end[INTERP_Y] += by[i][1];
+		end[INTERP_C] += by[i][2];
+		assert_int_equal(interp_build_line(b, end, &w, &d), 0);
+	}
+	a.centre_a_mm = end[INTERP_X];
+	a.centre_b_mm = end[INTERP_Y] + 1.6;
+	end[INTERP_X] += 1.6;
+	end[INTERP_Y] += 1.6;
+	assert_int_equal(interp_build_arc(b, end, &a, &w, &d), 0);
+	return finish(b);
+}
+
+static void a_run_ends_along_its_last_line(void **st)
+{
+	const double off = 0.001 * (1 + 0.6146 / 0.1668);	/* a rounding */
+	const double by = (0.6146 - off) / 0.1668;
+	struct made m;
+
+	(void)st;
+	axes_machine = (struct interp_machine) { .present = 0xff };
+	for (int i = 0; i < INTERP_NAXES; i++)
+		axes_machine.axis[i] = (struct interp_axis_limits) {
+			0.001, -1000, 1000, 40, 570, 8250
+		};
+	m = run_onto_arc();
+	assert_true(by * (double)m.p.segs[3].node_mm_s <=
+		    1.01 * cbrt(36 * 8250 * INTERP_CORNER_MM *
+				INTERP_CORNER_MM));
+	free(m.block);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_run_ends_along_its_last_line),
 		cmocka_unit_test(nodes_ask_of_no_axis_more_than_it_can_do),
 	};
 

@@ -19,14 +19,10 @@
 					 * differ by no more */
 #define HALVINGS	6
 
-/* Beside the path, a rounding of it counts so often. */
-#define RATE_MOST	20
-
 struct making {
 	struct look_all *to;
 	struct sections sections;
 	struct ways ways;
-	double tol[INTERP_NAXES];	/* of each column */
 	double pulse_mm;		/* the finest */
 };
 
@@ -40,11 +36,8 @@ struct rate {
 
 static struct rate rate_of(const struct making *m, uint32_t i, uint32_t k)
 {
-	const double by = ways_rate(&m->ways, i, k);
-	const double size = smaller(larger(fabs(by), 1), RATE_MOST);
-
-	return (struct rate) { by, m->tol[k] * (1 + size) /
-				   m->to->p->segs[i].length_mm };
+	return (struct rate) { ways_rate(&m->ways, i, k),
+			       ways_rate_off(&m->ways, i, k) };
 }
 
 /* How fast the axes of line @i are at most.  INFINITY: it is a rounding. */
@@ -303,13 +296,11 @@ int looks_make(struct look_all *ret, const struct interp_limits *l,
 	};
 	if (!ret->of)
 		return -ENOMEM;
-	ways_init(&m.ways, p);
+	ways_init(&m.ways, l, p);
 	m.pulse_mm = INFINITY;
-	for (uint32_t k = 0; k < ret->axes.n; k++) {
-		m.tol[k] = sections_tolerance(l, p, k);
+	for (uint32_t k = 0; k < ret->axes.n; k++)
 		m.pulse_mm = smaller(m.pulse_mm,
 				     p->head->pulse_mm[p->head->column[k]]);
-	}
 	for (uint32_t i = 0; i < p->head->nsegs; i++) {
 		ret->of[i].own_mm_s = p->segs[i].feed_max_mm_s;
 		ret->of[i].node_mm_s = INFINITY;

@@ -51,16 +51,6 @@ struct interp_axes sections_axes(const struct interp_limits *l,
 	return ret;
 }
 
-double sections_tolerance(const struct interp_limits *l,
-			  const struct interp_program *p, uint32_t column)
-{
-	const uint8_t axis = p->head->column[column];
-	const double by = interp_axis_is_rotary((enum interp_axis)axis) ?
-			  180 / M_PI / l->rotary_radius_mm : 1;
-
-	return larger(p->head->pulse_mm[axis], l->tolerance_mm * by);
-}
-
 /* -- Ways ------------------------------------------------------------------ */
 
 static void of_line(const struct interp_program *p, uint32_t seg, double *ret)
@@ -221,7 +211,7 @@ static int add_run(struct making *m, uint32_t from, uint32_t to)
 	int err = s && x ? 0 : -ENOMEM;
 
 	for (uint32_t k = 0; k < n; k++)
-		r.tolerance[k] = sections_tolerance(m->l, m->p, k);
+		r.tolerance[k] = m->ways.tol[k];
 	for (size_t i = 0; err == 0 && i < nodes; i++) {
 		const struct interp_seg *seg = &m->p->segs[from + i];
 
@@ -240,14 +230,31 @@ static int add_run(struct making *m, uint32_t from, uint32_t to)
 	return err;
 }
 
+/* The machine goes along the lines: at the end of a run it comes by line @i, off
+ * which a rounding alone may have the shape. */
+static void keep_to_line(const struct ways *w, uint32_t i, double *way)
+{
+	for (uint32_t k = 0; k < w->p->head->naxes; k++) {
+		const double by = ways_rate(w, i, k);
+		const double off = ways_rate_off(w, i, k);
+
+		way[k * INTERP_AXES_WAY] = larger(smaller(
+			way[k * INTERP_AXES_WAY], by + off), by - off);
+	}
+}
+
 /* At an end of a section.  The two sides of a knot of a curve may differ. */
-static void way_at_end(struct sections *w, const struct section *s, bool last,
+static void way_at_end(struct making *m, const struct section *s, bool last,
 		       double *ret)
 {
-	const struct interp_seg *k = &w->p->segs[last ? s->to - 1 : s->from];
+	const uint32_t i = last ? s->to - 1 : s->from;
+	const struct interp_seg *k = &m->p->segs[i];
 	const double in = k->kind == INTERP_CURVE ? INSIDE : 0;
 
-	sections_way(w, s, k->s_mm + k->length_mm * (last ? 1 - in : in), ret);
+	sections_way(m->to, s, k->s_mm + k->length_mm * (last ? 1 - in : in),
+		     ret);
+	if (s->part)
+		keep_to_line(&m->ways, i, ret);
 }
 
 static double section_mm(const struct sections *w, const struct section *s)
@@ -270,11 +277,11 @@ static void find_corners(struct making *m)
 		struct section *a = &w->at[i], *b = a + 1;
 		double mm = 0;
 
-		way_at_end(w, a, true, before);
+		way_at_end(m, a, true, before);
 		do {
 			double v;
 
-			way_at_end(w, b, false, behind);
+			way_at_end(m, b, false, behind);
 			v = interp_axes_corner_mm_s(&m->axes, before, behind,
 						    a->along & b->along);
 			for (struct section *k = a; k < b; k++)
@@ -293,7 +300,7 @@ int sections_make(struct sections *ret, const struct interp_limits *l,
 	int err = 0;
 
 	*ret = (struct sections) { .p = p };
-	ways_init(&m.ways, p);
+	ways_init(&m.ways, l, p);
 	for (uint32_t i = 1, end; err == 0 && i + 1 < p->head->nsegs; i = end) {
 		end = i + 1;
 		if (p->segs[i].kind >= INTERP_BEGIN)

@@ -48,11 +48,6 @@ void sections_way(struct sections *w, const struct section *s, double s_mm,
 
 void sections_free(struct sections *s);
 
-/** sections_tolerance() - of that column: what is less is a rounding.  It is a
- *  pulse at least. */
-double sections_tolerance(const struct interp_limits *l,
-			  const struct interp_program *p, uint32_t column);
-
 /** sections_axes() - what the axis of each column of @p can do. */
 struct interp_axes sections_axes(const struct interp_limits *l,
 				 const struct interp_program *p);

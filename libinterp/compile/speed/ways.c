@@ -2,9 +2,16 @@
 /* ways.c - the columns of a program, and which of them make its length */
 #include "speed/ways.h"
 
+#include "interp/smaller.h"
+
+#include <math.h>
+
 /* The square of what those columns go by that make the length is 1 on each mm
  * of a line, of others before them far less. */
 #define COUNTS		0.25
+
+/* Beside the path, a rounding of it counts so often. */
+#define RATE_MOST	20
 
 static uint32_t columns_of(const struct interp_program *p, uint32_t axes)
 {
@@ -15,7 +22,17 @@ static uint32_t columns_of(const struct interp_program *p, uint32_t axes)
 	return columns;
 }
 
-void ways_init(struct ways *w, const struct interp_program *p)
+static double tolerance(const struct interp_limits *l,
+			const struct interp_program *p, uint32_t axis)
+{
+	const double by = interp_axis_is_rotary((enum interp_axis)axis) ?
+			  180 / M_PI / l->rotary_radius_mm : 1;
+
+	return larger(p->head->pulse_mm[axis], l->tolerance_mm * by);
+}
+
+void ways_init(struct ways *w, const struct interp_limits *l,
+	       const struct interp_program *p)
 {
 	*w = (struct ways) {
 		.p = p,
@@ -23,9 +40,20 @@ void ways_init(struct ways *w, const struct interp_program *p)
 				     1u << INTERP_Z),
 		.uv = columns_of(p, 1u << INTERP_U | 1u << INTERP_V),
 	};
-	for (uint32_t j = 0; j < p->head->naxes; j++)
-		w->sub_mm[j] = p->head->pulse_mm[p->head->column[j]] /
-			       INTERP_SUB;
+	for (uint32_t j = 0; j < p->head->naxes; j++) {
+		const uint32_t axis = p->head->column[j];
+
+		w->sub_mm[j] = p->head->pulse_mm[axis] / INTERP_SUB;
+		w->tol[j] = tolerance(l, p, axis);
+	}
+}
+
+double ways_rate_off(const struct ways *w, uint32_t i, uint32_t k)
+{
+	const double size = smaller(larger(fabs(ways_rate(w, i, k)), 1),
+				    RATE_MOST);
+
+	return w->tol[k] * (1 + size) / w->p->segs[i].length_mm;
 }
 
 uint32_t ways_column(const struct interp_program *p, uint32_t axis)
