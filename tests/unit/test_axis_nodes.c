@@ -217,7 +217,8 @@ static void nodes_ask_of_no_axis_more_than_it_can_do(void **st)
 static struct made run_onto_arc(void)
 {
 	static const double by[][3] = {		/* X, Y, C */
-		{ 8, 0, 0 }, { 0.0042, 0, -0.0401 }, { 0.1666, -0.0086, -0.6146 },
+		{ 8, 0, 0 }, { 0.0042, 0, -0.0401 },
+		{ 0.1666, -0.0086, -0.6146 },
 	};
 	const struct interp_build_options o = {
 		.machine = &axes_machine, .strategy = INTERP_SIMULTANEOUS,

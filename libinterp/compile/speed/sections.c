@@ -230,8 +230,8 @@ static int add_run(struct making *m, uint32_t from, uint32_t to)
 	return err;
 }
 
-/* The machine goes along the lines: at the end of a run it comes by line @i, off
- * which a rounding alone may have the shape. */
+/* The machine goes along the lines: at the end of a run it comes by line @i.  A
+ * rounding alone may have the shape off it. */
 static void keep_to_line(const struct ways *w, uint32_t i, double *way)
 {
 	for (uint32_t k = 0; k < w->p->head->naxes; k++) {
