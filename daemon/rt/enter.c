@@ -81,6 +81,7 @@ void cycle_enter(struct cycle *c, enum cycle_state s)
 		if (fault_any(c->fault.latched, fault_row_disables))
 			c->out.enable = false;
 		axes_forget(c);
+		c->hold.moving = false;
 		mover_set(&c->mover, 0);
 		mover_set(&c->manual.mover, 0);
 		break;

@@ -608,9 +608,41 @@ static void without_power_a_verb_is_refused_and_its_return_starts_nothing(
 	}
 }
 
+/* It stands: what is watched in motion, such as axes without power or the
+ * door, is no fault any more. */
+static void a_fault_ends_a_way_by_command(void **st)
+{
+	static const enum cycle_verb ways[] = { CYCLE_RETRACT, CYCLE_STEP };
+
+	(void)st;
+	for (int lines = 0; lines < 2; lines++) {
+		for (int i = 0; i < 2; i++) {
+			struct world w;
+
+			world_make(&w, lines);
+			assert_int_equal(ask(&w, CYCLE_START, 0), ANSWER_DONE);
+			run_until_x(&w, WALL);
+			assert_int_equal(ask(&w, CYCLE_HOLD, 0), ANSWER_DONE);
+			stands(&w);
+			assert_int_equal(ask(&w, ways[i], i ? -1 : 0.9),
+					 ANSWER_DONE);
+			run_for(&w, 0.05);
+			assert_true(w.cycle.hold.moving);
+			assert_int_equal(ask(&w, CYCLE_ESTOP, 0), ANSWER_DONE);
+			run_for(&w, 1);
+			assert_int_equal(w.cycle.state, STATE_FAULT);
+			assert_false(cycle_moves(&w.cycle));
+			assert_int_equal(w.cycle.fault.latched,
+					 fault_bit(FAULT_ESTOP));
+			world_free(&w);
+		}
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_fault_ends_a_way_by_command),
 		cmocka_unit_test(every_stop_has_a_way_out_by_every_verb),
 		cmocka_unit_test(an_axis_that_was_moved_far_by_hand_is_not_driven_back),
 		cmocka_unit_test(without_power_a_verb_is_refused_and_its_return_starts_nothing),
