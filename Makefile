@@ -101,6 +101,8 @@ CONFIG	:= $(wildcard daemon/config/*.c)
 COMPILING := $(wildcard daemon/compiling/*.c)
 # The values in force, for the programs that show them: edmd-jobs, edm-panel.
 VALUES	:= $(wildcard daemon/values/*.c)
+# A job in virtual time: edmsim, edmd-jobs.
+VIRTUAL	:= $(wildcard daemon/virtual/*.c)
 SHM	:= $(wildcard daemon/shm/*.c)
 SETUP	:= $(wildcard daemon/setup/*.c)
 EDMD	:= $(wildcard daemon/edmd/*.c)
@@ -137,20 +139,21 @@ INC_io		= -Idaemon/io -Icommon -Idaemon/config $(WORDS_H) $(CORE_H) $(GPIOD_INC)
 INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(WORDS_H) $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
+INC_virtual	= -Idaemon/virtual $(INC_config) $(COMPILE_H)
 INC_values	= -Idaemon/values -Idaemon/shm $(INC_compiling)
 INC_setup	= -Idaemon/setup -Icommon
 INC_logger	= -Idaemon/logger -Icommon -Imessages/sign
 INC_edmd	= -Idaemon/edmd $(INC_logger) -Icommon -Idaemon/shm -Idaemon/setup $(INC_config)
-INC_jobs	= -Idaemon/jobs $(INC_logger) -Icommon $(WORDS_H) $(INC_values) $(MODEL_H) -Imessages/sign -I$(B)/messages
+INC_jobs	= -Idaemon/jobs $(INC_logger) -Icommon $(WORDS_H) $(INC_values) $(INC_virtual) $(MODEL_H) -Imessages/sign -I$(B)/messages
 INC_sign	= -Imessages/sign -Icommon
 INC_client	= -Iclients/client -Icommon $(WORDS_H) -Imessages/sign -I$(B)/messages
-INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_config) $(INC_compiling) $(MODEL_H)
+INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_virtual) $(INC_compiling) $(MODEL_H)
 INC_ctl		= -Iclients/ctl -Icommon -Idaemon/config -Idaemon/io -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
 INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_panel	= -Iclients/panel -Icommon $(WORDS_H) $(INC_values) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_plan	= -Iclients/plan -Icommon $(INC_config) $(INC_compiling)
-INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan -Iclients/panel -Iclients/ctl
+INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_virtual) $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan -Iclients/panel -Iclients/ctl
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
 part = $(if $(filter common,$(firstword $(subst /, ,$1))),common,$(word 2,$(subst /, ,$1)))
@@ -171,6 +174,7 @@ SIM_IO_O := $(filter-out %/can402_lines.o %/gpio.o %/gpio_open.o %/gpio_axes.o %
 LINES_O	 := $(filter %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG)) $(TEXT_O)
 COMPILING_O := $(call obj,$(COMPILING))
+VIRTUAL_O := $(call obj,$(VIRTUAL))
 SHM_O	 := $(call obj,$(SHM)) $(WORDS_O)
 SIGN_O	 := $(call obj,$(SIGN))
 LOGGER_O	 := $(call obj,$(LOGGER)) $(B)/common/plain.o
@@ -313,13 +317,13 @@ $(MODEL_A): $(call obj,$(MODEL))
 $(TRIED_A): $(call obj,$(TRIED))
 	$(archive)
 
-$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
+$(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(VIRTUAL_O) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A)
 	$(call link,-linih -ljansson -lpthread -lnlopt -lm)
 
 $(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
 
-$(B)/edmd-jobs: $(call obj,$(JOBS) $(VALUES) $(LOGGER)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(INTERP_A)
+$(B)/edmd-jobs: $(call obj,$(JOBS) $(VALUES) $(LOGGER)) $(SIGN_O) $(SHM_O) $(VIRTUAL_O) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -ljansson -llcm -lsqlite3 -lsodium -lsystemd -lm)
 
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
@@ -379,7 +383,7 @@ $(B)/unit/test_can_queue: UNIT_LIBS = -Wl,--wrap=can_socket_open
 $(B)/unit/test_ground: UNIT_LIBS = -Wl,--wrap=interp_program_any_at
 $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 
-$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
+$(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(VIRTUAL_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
 	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
 
 $(B)/tests/bench/plan.o: INC_bench += -Iclients/plan
@@ -910,7 +914,7 @@ clean:
 
 .PHONY: all panel pictures-panel panel-load panel-frames panel-firefox demo bench-plan check quick vm vm-parts check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
-	experiments-curve experiments-servo experiments-wire invariants \
+	experiments-curve experiments-servo experiments-wire experiments-times invariants \
 	walkable wire-random \
 	pictures callgraph faults plc-files fuzz lint install uninstall clean
 .SECONDARY:

@@ -154,6 +154,18 @@ int ctl_wait(struct ctl *c, const char *id);
 /** ctl_duration() - "1 h 02 min 03 s" */
 void ctl_duration(char *to, size_t size, double s);
 
+/** ctl_left() - "2 min 03 s"; before the job has cut, "1 min 02 s to 4 min 06
+ *  s"; "?". */
+void ctl_left(char *to, size_t size, const struct talk_status *s);
+/** ctl_left_why() - when that is, and what it is known by. */
+void ctl_left_why(char *to, size_t size, const struct talk_status *s);
+
+/** ctl_left() - "2 min 03 s"; before the job has cut, "1 min 02 s to 4 min 06
+ *  s"; "?". */
+void ctl_left(char *to, size_t size, const struct talk_status *s);
+/** ctl_left_why() - when that is, and what it is known by. */
+void ctl_left_why(char *to, size_t size, const struct talk_status *s);
+
 /* -- line.c: progress in one line ----------------------------------------- */
 
 #define LINE_MAX_CHARS	320

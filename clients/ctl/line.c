@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <time.h>
 #include <unistd.h>
 
 #define BAR_CHARS	24
@@ -36,6 +37,52 @@ void ctl_duration(char *to, size_t size, double s)
 		snprintf(to, size, "%ld min %02ld s", n / 60, n % 60);
 	else
 		snprintf(to, size, "%ld s", n);
+}
+
+void ctl_left(char *to, size_t size, const struct talk_status *s)
+{
+	char from[32], until[32];
+
+	if (s->eta_s < 0) {
+		snprintf(to, size, "?");
+	} else if (strcmp(s->eta_by, "cut") == 0) {
+		ctl_duration(to, size, s->eta_s);
+	} else {
+		ctl_duration(from, sizeof(from), s->eta_min_s);
+		ctl_duration(until, sizeof(until), s->eta_max_s);
+		snprintf(to, size, "%s to %s", from, until);
+	}
+}
+
+static void add_end(char *to, size_t size, double end_s)
+{
+	const time_t end = (time_t)end_s;
+	const bool far = end_s - (double)time(NULL) > 20 * 3600;
+	struct tm tm;
+
+	if (end_s > 0 && localtime_r(&end, &tm))
+		strftime(to, size, far ? ", ends %d %b %H:%M" : ", ends %H:%M",
+			 &tm);
+}
+
+void ctl_left_why(char *to, size_t size, const struct talk_status *s)
+{
+	const char *what = *s->eta_condition ? s->eta_condition : "cutting";
+	size_t n;
+
+	*to = '\0';
+	if (s->eta_s < 0)
+		return;
+	add_end(to, size, s->end_s);
+	n = strlen(to);
+	if (strcmp(s->eta_by, "forecast") == 0)
+		snprintf(to + n, size - n, ", by forecast");
+	else if (strcmp(s->eta_by, "learnt") == 0)
+		snprintf(to + n, size - n, ", as learnt: %s takes %.2f times "
+			 "its forecast", what, s->eta_factor);
+	else if (fabs(s->eta_factor - 1) > 0.1)
+		snprintf(to + n, size - n, ", %s takes %.2f times its forecast",
+			 what, s->eta_factor);
 }
 
 /* \\r could not erase a line that wraps. */
@@ -91,7 +138,7 @@ void line_bar(struct line *l, double done, const char *text)
 static void describe(char *to, size_t size, const struct talk_status *s,
 		     double feed_mm_min)
 {
-	char left[32], b[BAR_CHARS + 3], rest[LINE_MAX_CHARS - BAR_CHARS - 3];
+	char left[64], b[BAR_CHARS + 3], rest[LINE_MAX_CHARS - BAR_CHARS - 3];
 
 	if (strcmp(s->daemon, "ok") != 0) {
 		snprintf(to, size, "edmd is %s; job %s, %s, was at %.3f mm",
@@ -109,10 +156,7 @@ static void describe(char *to, size_t size, const struct talk_status *s,
 			 s->state, s->asks);
 		return;
 	}
-	if (s->eta_s >= 0)
-		ctl_duration(left, sizeof(left), s->eta_s);
-	else
-		snprintf(left, sizeof(left), "?");
+	ctl_left(left, sizeof(left), s);
 	snprintf(rest, sizeof(rest), "%5.1f %% %-8s left %s, depth %.3f mm, "
 		 "gap %.0f V, jumps %d, retracts %d, feed %.2f mm/min",
 		 s->progress * 100, s->state, left, s->depth_mm, s->gap_v,

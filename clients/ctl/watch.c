@@ -47,24 +47,25 @@ static void print_json(const struct talk_status *s)
 
 static void print_text(const struct talk_status *s)
 {
-	char took[32], left[32] = "?";
+	char took[32], left[64], why[96];
 
 	ctl_duration(took, sizeof(took), s->job_s);
-	if (s->eta_s >= 0)
-		ctl_duration(left, sizeof(left), s->eta_s);
+	ctl_left(left, sizeof(left), s);
+	ctl_left_why(why, sizeof(why), s);
 	printf("machine    %s\nedmd       %s\nstate      %s\nfault      %s\n",
 	       s->machine, s->daemon, s->state, s->fault);
 	if (*s->asks)
 		printf("stands     %s, %s\n", s->stand, s->asks);
 	if (*s->job)
 		printf("job        %s, %s, %s\nline       %d of %d\n"
-		       "path       %.3f mm of %.3f mm, %.1f %%\n"
+		       "path       %.3f mm of %.3f mm\n"
 		       "depth      %.3f mm\n"
 		       "sums       jumps %d, retracts %d, shorts %d\n"
-		       "time       %s, left %s\n", s->job, s->job_name,
-		       s->job_state, s->line, s->lines, s->place_mm,
-		       s->length_mm, s->progress * 100, s->depth_mm, s->jumps,
-		       s->retracts, s->shorts, took, left);
+		       "time       %s, %.1f %%, left %s%s\n", s->job,
+		       s->job_name, s->job_state, s->line, s->lines,
+		       s->place_mm, s->length_mm, s->depth_mm, s->jumps,
+		       s->retracts, s->shorts, took, s->progress * 100, left,
+		       why);
 	else
 		printf("job        none\n");
 	if (s->hunts > 0)

@@ -283,6 +283,19 @@ static void go_on_sending(struct sending *s)
 	free_sending(s);
 }
 
+static void take_time(struct service_status *s, const struct talk_status *t)
+{
+	s->progress = t->progress;
+	s->eta_s = t->eta_s;
+	s->eta_min_s = t->eta_min_s;
+	s->eta_max_s = t->eta_max_s;
+	s->eta_factor = t->eta_factor;
+	s->end_s = t->end_s;
+	snprintf(s->eta_by, sizeof(s->eta_by), "%s", t->eta_by);
+	snprintf(s->eta_condition, sizeof(s->eta_condition), "%s",
+		 t->eta_condition);
+}
+
 static void take_status(struct service *a)
 {
 	struct service_status *s = &a->status;
@@ -305,7 +318,7 @@ static void take_status(struct service *a)
 		s->lines = t->lines;
 		s->electrode = t->electrode;
 		s->queue_len = t->queue_len;
-		s->eta_s = t->eta_s;
+		take_time(s, t);
 	}
 	s->heard = a->heard && talk_now_s() - a->heard_s < HEARD_S;
 }

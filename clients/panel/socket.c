@@ -11,6 +11,7 @@
 #include "frames.h"
 #include "press.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -203,6 +204,21 @@ static json_t *changes(const json_t *was, json_t *now)
 	return o;
 }
 
+/* Rounded: what has not changed is not sent. */
+static void add_time(json_t *o, const struct service_status *s)
+{
+	json_object_set_new(o, "eta", json_real(round(s->eta_s)));
+	json_object_set_new(o, "etaMin", json_real(round(s->eta_min_s)));
+	json_object_set_new(o, "etaMax", json_real(round(s->eta_max_s)));
+	json_object_set_new(o, "etaBy", json_string(s->eta_by));
+	json_object_set_new(o, "etaCondition", json_string(s->eta_condition));
+	json_object_set_new(o, "etaFactor",
+			    json_real(round(s->eta_factor * 100) / 100));
+	json_object_set_new(o, "end", json_real(round(s->end_s / 10) * 10));
+	json_object_set_new(o, "progress",
+			    json_real(round(s->progress * 1000) / 1000));
+}
+
 static json_t *state_of(struct panel *p)
 {
 	const struct service_status *s = service_status(p->service);
@@ -221,7 +237,7 @@ static json_t *state_of(struct panel *p)
 	json_object_set_new(o, "lines", json_integer(s->lines));
 	json_object_set_new(o, "electrode", json_integer(s->electrode));
 	json_object_set_new(o, "queue", json_integer(s->queue_len));
-	json_object_set_new(o, "eta", json_real(s->eta_s));
+	add_time(o, s);
 	return o;
 }
 

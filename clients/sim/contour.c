@@ -26,7 +26,7 @@ struct watch {
 static void look(struct sim_run *r)
 {
 	struct watch *w = r->on_cycle_arg;
-	const struct cycle *c = &r->cycle;
+	const struct cycle *c = &r->v.cycle;
 	const struct interp_program_head *h = r->job.program.head;
 	const double at_mm = place_mm(c);
 	struct interp_contour_error e;
@@ -37,7 +37,7 @@ static void look(struct sim_run *r)
 	for (uint32_t j = 0; j < h->naxes; j++) {
 		const uint8_t i = h->column[j];
 
-		mm[j] = (comp_place(&c->comp.axis[i], r->in.actual[i]) -
+		mm[j] = (comp_place(&c->comp.axis[i], r->v.in.actual[i]) -
 			 c->probe.shift[i]) * h->pulse_mm[i];
 	}
 	interp_contour_step(&w->foot, mm, at_mm, &e);

@@ -61,7 +61,7 @@ static const char *state_name(int state)
 
 static struct plot *begin_plot(const struct sim_run *r)
 {
-	const struct cycle_gap_config *g = &r->cycle.config.gap;
+	const struct cycle_gap_config *g = &r->v.cycle.config.gap;
 
 	return plot_begin(&(struct plot_options) {
 		.program = "edmsim", .output = r->o->plot, .title = r->o->job,
@@ -92,7 +92,7 @@ int record_open(struct sim_run *r)
 		return EX_OSERR;
 	if (r->pulses) {
 		fprintf(r->pulses, "cycle,line,X,Y,Z,A,B,C,U,V\n");
-		put_point(r->pulses, &r->cycle);
+		put_point(r->pulses, &r->v.cycle);
 	}
 	if (r->trace)
 		fprintf(r->trace, "t_s,line,s_mm,feed_mm_s,gap_v,state,"
@@ -131,19 +131,19 @@ static double time_s(const struct cycle *c)
 /* How the simulated gap was; nothing if there is no gap. */
 static void put_gap(const struct sim_run *r)
 {
-	const struct io_shares *s = &r->in.shares;
+	const struct io_shares *s = &r->v.in.shares;
 	struct io_sim_result g;
 
-	if (r->in.shares_valid)
+	if (r->v.in.shares_valid)
 		fprintf(r->trace, ",%.4f,%.4f,%.4f,%.4f", (double)s->open,
 			(double)s->spark, (double)s->arc, (double)s->shorted);
 	else
 		fputs(",,,,", r->trace);
-	if (r->cycle.config.dry_run) {
+	if (r->v.cycle.config.dry_run) {
 		fputc(',', r->trace);
 		return;
 	}
-	io_sim_result(&r->machine, &g);
+	io_sim_result(&r->v.io, &g);
 	fprintf(r->trace, ",%.4f", g.debris);
 }
 
@@ -157,7 +157,7 @@ static bool cuts(const struct cycle *c)
 
 static void plot_cycle(const struct sim_run *r)
 {
-	const struct cycle *c = &r->cycle;
+	const struct cycle *c = &r->v.cycle;
 	const double *pulse = c->cursor.p.head->pulse_mm;
 	struct plot_row row = {
 		.t_s = time_s(c), .s_mm = place_mm(c),
@@ -173,7 +173,7 @@ static void plot_cycle(const struct sim_run *r)
 
 static void trace_cycle(const struct sim_run *r)
 {
-	const struct cycle *c = &r->cycle;
+	const struct cycle *c = &r->v.cycle;
 	const double *pulse = c->cursor.p.head->pulse_mm;
 
 	fprintf(r->trace, "%.6f,%u,%.6f,%.6f,%.2f,%s",
@@ -183,10 +183,10 @@ static void trace_cycle(const struct sim_run *r)
 		fprintf(r->trace, ",%.10g", place_axis(c, i) * pulse[i]);
 	put_gap(r);
 	for (int i = 0; i < INTERP_NAXES; i++)
-		fprintf(r->trace, ",%.10g", r->given.target[i] * pulse[i]);
+		fprintf(r->trace, ",%.10g", r->v.given.target[i] * pulse[i]);
 	/* As the machine measured it in this cycle, before it was sent on. */
 	for (int i = 0; i < INTERP_NAXES; i++)
-		fprintf(r->trace, ",%.10g", r->in.actual[i] * pulse[i]);
+		fprintf(r->trace, ",%.10g", r->v.in.actual[i] * pulse[i]);
 	fputc('\n', r->trace);
 }
 

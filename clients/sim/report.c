@@ -48,7 +48,7 @@ static void add_path(json_t *o, const struct sim_run *r)
 	for (uint32_t j = 0; j < h->naxes; j++) {
 		const char name[2] = { INTERP_AXIS_LETTERS[h->column[j]] };
 
-		add_int(pulses, name, r->cycle.totals.pulses[h->column[j]]);
+		add_int(pulses, name, r->v.cycle.totals.pulses[h->column[j]]);
 	}
 	add_int(o, "lines", h->lines);
 	add_int(o, "segments", motions(&r->job.program));
@@ -66,16 +66,16 @@ static void add_path(json_t *o, const struct sim_run *r)
 
 static void add_cut(json_t *o, const struct sim_run *r)
 {
-	const struct cycle_totals *t = &r->cycle.totals;
-	const double s = seconds(&r->cycle, r->cycle.count);
+	const struct cycle_totals *t = &r->v.cycle.totals;
+	const double s = seconds(&r->v.cycle, r->v.cycle.count);
 
 	add_int(o, "retracts", t->retracts);
 	add_real(o, "retract_mm_max", t->retract_mm_max);
 	add_int(o, "hunts", t->hunts);
 	add_int(o, "retracts_in_row_max", t->in_row_max);
 	add_int(o, "jumps", t->jumps);
-	add_real(o, "jump_s", seconds(&r->cycle, t->jump_cycles));
-	add_real(o, "erosion_s", seconds(&r->cycle, t->erode_cycles));
+	add_real(o, "jump_s", seconds(&r->v.cycle, t->jump_cycles));
+	add_real(o, "erosion_s", seconds(&r->v.cycle, t->erode_cycles));
 	add_int(o, "shorts", t->shorts);
 	add_int(o, "arcs", t->arcs);
 	add_real(o, "removed_mm3", r->result.cut.removed_mm3);
@@ -99,9 +99,9 @@ static void add_conditions(json_t *o, const struct sim_run *r)
 				 sizeof(name));
 		json_object_set_new(row, "condition", json_string(name));
 		add_real(row, "virtual_s",
-			 seconds(&r->cycle, r->spent[i].cycles));
+			 seconds(&r->v.cycle, r->spent[i].cycles));
 		add_real(row, "erosion_s",
-			 seconds(&r->cycle, r->spent[i].eroding));
+			 seconds(&r->v.cycle, r->spent[i].eroding));
 		json_array_append_new(rows, row);
 	}
 	if (json_array_size(rows))
@@ -111,7 +111,7 @@ static void add_conditions(json_t *o, const struct sim_run *r)
 
 static json_t *report(const struct sim_run *r)
 {
-	const struct cycle *c = &r->cycle;
+	const struct cycle *c = &r->v.cycle;
 	json_t *o = json_object();
 
 	json_object_set_new(o, "outcome", json_string(r->result.outcome));
@@ -150,7 +150,7 @@ int report_write(const struct sim_run *r)
  * fault. */
 static void print_hunting(const struct sim_run *r, FILE *f)
 {
-	const struct cycle *c = &r->cycle;
+	const struct cycle *c = &r->v.cycle;
 	const struct cycle_gap_config *g = &c->config.gap;
 
 	if (c->totals.hunts == 0)
@@ -167,17 +167,17 @@ static void print_hunting(const struct sim_run *r, FILE *f)
 /* In the words of edmctl alarms, from the same table. */
 static void print_fault(const struct sim_run *r, FILE *f)
 {
-	const struct fault_row *row = &fault_table[r->cycle.fault.first];
-	const struct interp_seg *beyond = probe_rest_beyond(&r->cycle);
+	const struct fault_row *row = &fault_table[r->v.cycle.fault.first];
+	const struct interp_seg *beyond = probe_rest_beyond(&r->v.cycle);
 
 	fprintf(f, ": %s at line %u: %s\nwhy        %s\nclear      %s",
-		row->name, beyond ? beyond->line : r->cycle.cursor.seg.line,
+		row->name, beyond ? beyond->line : r->v.cycle.cursor.seg.line,
 		row->what, row->why, row->clear);
 }
 
 void report_print(const struct sim_run *r, FILE *f)
 {
-	const struct cycle *c = &r->cycle;
+	const struct cycle *c = &r->v.cycle;
 	const struct cycle_totals *t = &c->totals;
 	const double s = seconds(c, c->count);
 

@@ -5,6 +5,7 @@
 #include "standard.h"
 #include "trials.h"
 
+#include <errno.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <sysexits.h>
@@ -27,89 +28,46 @@ bool run_interrupted(void)
 	return interrupted;
 }
 
-/* Also while the job is held, and on a way back. */
-static double virtual_s(const struct cycle *c)
-{
-	return (double)c->count * (double)c->config.period_ns * 1e-9;
-}
-
-static void command(struct sim_run *r, enum cycle_verb v, double arg_mm)
-{
-	const struct cycle_command m = { .verb = v, .arg_mm = arg_mm };
-
-	cycle_command(&r->cycle, &m);
-}
-
-/* Without a gap, and with axes that do not lag, there is nothing to
- * simulate. */
-static bool at_once(const struct sim_run *r)
-{
-	return config_machine_is(r->config, MACHINE_NONE) ||
-	       (r->o->dry_run && !r->config->sim.loops);
-}
-
-static int open_machine(struct sim_run *r)
+static int set_up(struct sim_run *r)
 {
 	const uint64_t seed = r->o->seed_given ? r->o->seed :
 						 (uint64_t)r->config->sim.seed;
-	int err;
-
-	if (at_once(r))
-		err = io_null_open(&r->machine, NULL, NULL);
-	else
-		err = io_sim_open_seed(&r->machine, r->config, seed);
-	return err ? EX_OSERR : 0;
-}
-
-static int set_up(struct sim_run *r)
-{
-	struct cycle_config cc;
-	int err = open_machine(r);
+	const struct virtual_options o = {
+		.config = r->config, .program = &r->job.program, .seed = seed,
+		.dry_run = r->o->dry_run,
+		.there_and_back = r->o->there_and_back,
+	};
+	int err = virtual_open(&r->v, &o);
 
 	if (err)
-		return err;
-	config_cycle(r->config, &cc);
-	cc.dry_run = r->o->dry_run ||
-		     config_machine_is(r->config, MACHINE_NONE);
-	cc.overrun_limit = 0;
-	if (at_once(r))
-		cc.contouring.methods = 0;
-	if (r->machine.edges_per_cycle)
-		cc.points_max = r->machine.edges_per_cycle;
-	if (r->o->there_and_back) {
-		cc.hold_at_end = true;
-		cc.gap.retract_mm_s = 1e3;
-	}
-	cycle_init(&r->cycle, &cc);
-	if (cycle_load(&r->cycle, &r->job.program) != ANSWER_DONE)
-		return EX_SOFTWARE;
+		return err == -EINVAL ? EX_SOFTWARE : EX_OSERR;
 	r->spent = calloc(r->job.program.head->nconds, sizeof(*r->spent));
 	if (!r->spent)
 		return EX_OSERR;
 	err = record_open(r);
 	r->deviation = r->o->report != NULL;
-	r->cycle.on_point = record_point;
-	r->cycle.on_point_arg = r;
+	r->v.cycle.on_point = record_point;
+	r->v.cycle.on_point_arg = r;
 	return err;
 }
 
 static void progress(const struct sim_run *r, bool last)
 {
 	const double len = r->job.program.head->length_mm;
-	const double share = len > 0 ? r->cycle.far_mm / len : 1;
+	const double share = len > 0 ? r->v.cycle.far_mm / len : 1;
 
 	if (r->o->quiet || !isatty(STDERR_FILENO))
 		return;
 	standard_control(stderr, "\r");
 	fprintf(stderr, "%3.0f %%  %10.1f s  %-8s %s", share * 100,
-		virtual_s(&r->cycle), state_duty[r->cycle.state].name,
+		virtual_s(&r->v), state_duty[r->v.cycle.state].name,
 		last ? "\n" : "");
 }
 
 /* Sleep until virtual time is due. */
 static void pace(const struct sim_run *r, double from_s)
 {
-	const double due_s = from_s + virtual_s(&r->cycle) / r->o->speed;
+	const double due_s = from_s + virtual_s(&r->v) / r->o->speed;
 	const double wait_s = due_s - clock_s(CLOCK_MONOTONIC);
 	const struct timespec t = {
 		.tv_sec = (time_t)wait_s,
@@ -123,34 +81,35 @@ static void pace(const struct sim_run *r, double from_s)
 /* The job is held by a programmed stop, or at an end of there and back. */
 static void go_on(struct sim_run *r)
 {
-	struct cycle *c = &r->cycle;
+	struct cycle *c = &r->v.cycle;
 
-	if (c->hold.moving || c->hold.fails || c->mover.v_mm_s != 0)
+	if (!virtual_stands(&r->v))
 		return;
 	if (r->o->there_and_back && r->leg == 0 &&
 	    c->far_mm >= r->job.program.head->length_mm - 1e-9) {
 		r->leg = 1;
-		command(r, CYCLE_RETRACT, 1e9);
+		cycle_command(c, &(struct cycle_command) {
+			.verb = CYCLE_RETRACT, .arg_mm = 1e9,
+		});
 		return;
 	}
 	if (r->leg == 1) {
 		r->leg = 2;
 		c->config.hold_at_end = false;
 	}
-	command(r, CYCLE_CONFIRM, c->stand.of);
-	command(r, CYCLE_START, 0);
+	virtual_go_on(&r->v);
 }
 
 static bool over(struct sim_run *r)
 {
-	const struct cycle *c = &r->cycle;
+	const struct cycle *c = &r->v.cycle;
 
-	if (c->state == STATE_IDLE || c->state == STATE_FAULT) {
+	if (virtual_is_over(&r->v)) {
 		r->result.outcome = cycle_outcome_name(c->outcome);
 		return true;
 	}
 	if (interrupted ||
-	    (r->o->limit_s > 0 && virtual_s(c) >= r->o->limit_s)) {
+	    (r->o->limit_s > 0 && virtual_s(&r->v) >= r->o->limit_s)) {
 		r->result.outcome = "limit";
 		return true;
 	}
@@ -159,24 +118,21 @@ static bool over(struct sim_run *r)
 
 static void spend(struct sim_run *r)
 {
-	struct sim_spent *s = &r->spent[r->cycle.cursor.seg.cond];
+	struct sim_spent *s = &r->spent[r->v.cycle.cursor.seg.cond];
 
-	s->cycles += state_duty[r->cycle.state].running;
-	s->eroding += r->cycle.state == STATE_ERODE;
+	s->cycles += state_duty[r->v.cycle.state].running;
+	s->eroding += r->v.cycle.state == STATE_ERODE;
 }
 
 static void cycles(struct sim_run *r)
 {
 	const double from_s = clock_s(CLOCK_MONOTONIC);
-	struct cycle *c = &r->cycle;
+	struct cycle *c = &r->v.cycle;
 
-	r->machine.write(r->machine.self, &c->out);
 	for (uint64_t n = 1; !over(r); n++) {
 		if (c->state == STATE_HOLD)
 			go_on(r);
-		r->machine.read(r->machine.self, &r->in);
-		cycle_step(c, &r->in, &r->given);
-		r->machine.write(r->machine.self, &r->given);
+		virtual_step(&r->v);
 		record_cycle(r);
 		spend(r);
 		if (r->on_cycle)
@@ -199,8 +155,8 @@ static int32_t end_error(const struct sim_run *r)
 	int32_t worst = 0;
 
 	for (uint32_t j = 0; j < p->head->naxes; j++) {
-		const int32_t d = abs(r->cycle.cursor.pos[p->head->column[j]] -
-				      interp_round_sub(end[j]));
+		const int32_t at = r->v.cycle.cursor.pos[p->head->column[j]];
+		const int32_t d = abs(at - interp_round_sub(end[j]));
 
 		worst = d > worst ? d : worst;
 	}
@@ -217,8 +173,8 @@ int run_job(struct sim_run *r)
 	signal(SIGTERM, on_signal);
 	cycles(r);
 	r->result.end_error_pulses = end_error(r);
-	if (!r->cycle.config.dry_run)
-		io_sim_result(&r->machine, &r->result.cut);
-	r->machine.close(r->machine.self);
+	if (!r->v.cycle.config.dry_run)
+		io_sim_result(&r->v.io, &r->result.cut);
+	virtual_close(&r->v);
 	return record_close(r);
 }

@@ -6,9 +6,8 @@
 #define SIM_SIM_H
 
 #include "compiling.h"
-#include "cycle.h"
 #include "interp/compile.h"
-#include "io.h"
+#include "virtual.h"
 
 #include <stdio.h>
 
@@ -66,10 +65,7 @@ struct sim_run {
 	const struct sim_options *o;
 	const struct machine_config *config;
 	struct sim_job job;
-	struct cycle cycle;
-	struct io_machine machine;
-	struct io_inputs in;		/* of this cycle */
-	struct io_outputs given;	/* to the machine, in this cycle */
+	struct virtual v;
 	struct sim_result result;
 	struct sim_spent *spent;	/* by index of the condition */
 	FILE *pulses, *trace, *report;

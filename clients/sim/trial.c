@@ -50,11 +50,11 @@ static void run_seed(struct crew *w, uint32_t k)
 	r->config = w->c;
 	r->job = *w->t->job;
 	x->e = run_job(r);
-	x->totals = r->cycle.totals;
+	x->totals = r->v.cycle.totals;
 	x->cut = r->result.cut;
 	x->virtual_s = (double)x->totals.cycles *
 		       (double)config_period_ns(w->c) * 1e-9;
-	x->fault = r->cycle.fault.first != FAULT_NONE;
+	x->fault = r->v.cycle.fault.first != FAULT_NONE;
 	free(r->spent);
 	free(r);
 }

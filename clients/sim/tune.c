@@ -51,7 +51,7 @@ static void sample(struct sim_run *r)
 {
 	struct tuning *t = r->on_cycle_arg;
 	struct rows *w = &t->rows;
-	const double u = interp_cursor_place_mm(&r->cycle.cursor);
+	const double u = interp_cursor_place_mm(&r->v.cycle.cursor);
 
 	if (w->n > 0 && u <= w->u[w->n - 1])
 		return;

@@ -24,7 +24,7 @@ static void fill_job(struct checkpoint_job *to, const struct jobs *j)
 	sodium_hex2bin(to->tech, sizeof(to->tech), job->tech_sha256,
 		       strlen(job->tech_sha256), NULL, NULL, NULL);
 	memcpy(to->config, j->config_hash, sizeof(to->config));
-	memcpy(to->start, j->eta.start, sizeof(to->start));
+	memcpy(to->start, j->queue.start_pulses, sizeof(to->start));
 	if (e->n == job->n && e->now >= 0) {
 		to->electrode = e->worn[e->now].electrode;
 		to->part = e->worn[e->now].part;

@@ -94,8 +94,9 @@ static int measure(struct compiler *c, const void *block, size_t bytes)
 
 	if (err == 0 && c->request.wants_wear)
 		err = interp_wear_measure(&r->wear, &p);
-	if (err == 0 && c->request.wants_block)
-		err = eta_measure(&r->eta, &p);
+	if (err == 0)
+		memcpy(r->start_pulses, p.head->start_pulses,
+		       sizeof(r->start_pulses));
 	return err;
 }
 
@@ -326,14 +327,12 @@ static void compiler_work(struct compiler *c)
 void compiler_take_out(struct compiler_result *r)
 {
 	r->wear = (struct interp_wear) { .nchanges = 0 };
-	r->eta = (struct eta) { .n = 0 };
 	r->block = -1;
 }
 
 void compiler_forget(struct compiler_result *r)
 {
 	interp_wear_free(&r->wear);
-	eta_fini(&r->eta);
 	if (r->block >= 0)
 		close(r->block);
 	r->block = -1;

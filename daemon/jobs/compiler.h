@@ -11,7 +11,6 @@
 #define JOBS_COMPILE_H
 
 #include "config.h"
-#include "eta.h"
 #include "interp/build_from.h"
 #include "interp/nc.h"
 #include "interp/wear.h"
@@ -84,7 +83,7 @@ struct compiler_result {
 	struct interp_wear wear;	/* if it was wanted */
 	int block;			/* the program, if it was wanted: what
 					 * shm_program_name() takes; -1 */
-	struct eta eta;			/* of it */
+	int32_t start_pulses[INTERP_NAXES];	/* where it begins */
 };
 
 typedef void (*compiler_done_fn)(void *arg, struct compiler_result *r);

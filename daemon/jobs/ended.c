@@ -69,6 +69,7 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 		electrode_book(j);
 	jobs_with_note(j);
 	queue_record(j, state, reason);
+	forecaster_learn(j);
 	queue_recount(j);
 	q->ended = SHM_OUTCOME_NONE;
 	jobs_note(j, &(struct jobs_note) {

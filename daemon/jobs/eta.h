@@ -1,53 +1,84 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * eta.h - estimate how long the running job will still take
+ * eta.h - how long the job in the machine will still take
  *
- * Nearly all of the time goes into cutting, and almost none into positioning,
- * however long its way is. So the path is divided into parts that are cut and
- * parts that are positioned.
+ * The forecast (forecast.h) says how long each part of the path takes.  What
+ * the parts that are done have taken while they were cut is compared with it,
+ * condition by condition, and the parts to come are corrected by that.  So a
+ * process that removes half of what was believed is noticed in the condition
+ * in which it does, and no jump, retract or stand is taken for progress.
+ *
+ * A factor is what cutting takes of its forecast: 2 is twice as long.  A
+ * condition that was not cut yet has that of the others.  Factors that earlier
+ * jobs had are where the job begins.
  *
  * Threads: one, that of the event loop.
  */
 #ifndef JOBS_ETA_H
 #define JOBS_ETA_H
 
-#include "interp/program.h"
+#include "forecast.h"
 
-#include <stddef.h>
+#include <stdbool.h>
+#include <stdint.h>
 
-/* From here on the path is cut, or positioned; before it so much was cut. */
-struct eta_part {
-	double s_mm, cut_mm;
-	bool cut;
+struct eta_cond {
+	double learnt;			/* factor of earlier jobs; 0: none */
+	double passed_s, expected_s;	/* of the parts that are done; expected:
+					 * as forecast */
+	double late_passed_s, late_expected_s;	/* what is long ago counts
+						 * less */
+	double all_s;			/* of all parts, as forecast */
 };
 
-/* Fields are private; all 0 at first. */
+/* Read, do not write; all 0 at first. */
 struct eta {
 	uint32_t n;			/* the program it is of; 0: none */
-	struct eta_part *part;
-	size_t nparts;
-	double cut_mm;			/* of the whole path */
-	int32_t start[INTERP_NAXES];	/* where it begins, pulses */
+	struct forecast forecast;
+	struct eta_cond *cond;		/* as many as the forecast has */
+	uint32_t at;			/* the part that it is in ... */
+	double entered_s;		/* ... since this time of the job */
+	double job_s;			/* at the last look */
+	double least_s;			/* smallest left_s since it was told
+					 * that the job takes longer */
 };
 
-/** eta_give() - use @of for program @n; @of has nothing any more. */
-void eta_give(struct eta *l, struct eta *of, uint32_t n);
+/* What it comes to. */
+enum eta_by {
+	ETA_NONE,			/* there is no estimate */
+	ETA_FORECAST,			/* nothing was cut yet */
+	ETA_LEARNT,			/* ... but earlier jobs were */
+	ETA_CUT,			/* by what was cut of this job */
+};
 
-/** eta_take() - use program @n of @machine, if it is not the one in use. */
-void eta_take(struct eta *l, const char *machine, uint32_t n);
+struct eta_told {
+	enum eta_by by;
+	double left_s;			/* -1: not known */
+	double min_s, max_s;		/* it lies between these */
+	uint32_t cond;			/* that changes most, ... */
+	double factor;			/* ... and its factor */
+};
 
-/**
- * eta_measure() - divide @p into its parts. Return: 0; or -ENOMEM, and then it
- * has none.
- */
-int eta_measure(struct eta *l, const struct interp_program *p);
+/** eta_give() - use @of for program @n; @of has nothing any more.
+ *  Return: 0; -ENOMEM: there is no estimate. */
+int eta_give(struct eta *l, struct forecast *of, uint32_t n);
 
-/**
- * eta_s() - the estimate in s, if @far_mm of the path took @job_s.
- *
- * Return: -1 if there is none, because nothing has been cut yet.
- */
-double eta_s(const struct eta *l, double far_mm, double job_s);
+/** eta_learnt() - earlier jobs had this factor in condition @cond. */
+void eta_learnt(struct eta *l, uint32_t cond, double factor);
+
+/** eta_look() - the farthest place is @far_mm, after @job_s of the job.  It may
+ *  be called for the first time anywhere in the job. */
+void eta_look(struct eta *l, double far_mm, double job_s);
+
+/** eta_tell() - the estimate at the last look. */
+void eta_tell(const struct eta *l, struct eta_told *ret);
+
+/** eta_rose() - does it take a tenth longer than it ever seemed to since this
+ *  was true?  Then somebody should be told. */
+bool eta_rose(struct eta *l);
+
+/** eta_word() - "", "forecast", "learnt", "cut". */
+const char *eta_word(enum eta_by by);
 
 /** eta_fini() - free everything. */
 void eta_fini(struct eta *l);

@@ -17,6 +17,7 @@
 #include "early.h"
 #include "electrode.h"
 #include "eta.h"
+#include "forecaster.h"
 #include "link.h"
 #include "queue.h"
 #include "reply.h"
@@ -47,7 +48,8 @@ struct jobs {
 	struct asks asks;
 	struct tally tally;
 	struct calls calls;
-	struct eta eta;
+	struct forecaster forecaster;
+	struct eta eta;			/* made of its result */
 	struct early early;
 	struct electrode electrode;
 	struct trust trust;

@@ -197,7 +197,8 @@ static void load_ask(struct jobs *j, struct compiler_result *r)
 	}
 	if (refused_electrode(j, &r->wear))
 		return;
-	eta_give(&j->eta, &r->eta, j->queue.job.n);
+	memcpy(j->queue.start_pulses, r->start_pulses,
+	       sizeof(j->queue.start_pulses));
 	j->queue.loading = true;
 	if (link_send(&j->link, &c, jobs_now_us()) < 0) {
 		j->queue.loading = false;

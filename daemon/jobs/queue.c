@@ -156,6 +156,20 @@ static void set_state(struct jobs *j, enum job_state state)
 	store_set_state(j->store, q->job.n, state);
 }
 
+static void read_start(struct jobs *j)
+{
+	struct interp_program p;
+	const void *block;
+	size_t bytes;
+
+	if (shm_program_read(&block, &bytes, j->machine, j->queue.job.n) < 0)
+		return;
+	if (interp_program_map(&p, block, bytes) == 0)
+		memcpy(j->queue.start_pulses, p.head->start_pulses,
+		       sizeof(j->queue.start_pulses));
+	shm_program_unmap(block, bytes);
+}
+
 int queue_init(struct jobs *j)
 {
 	static struct again a;
@@ -174,7 +188,7 @@ int queue_init(struct jobs *j)
 		   store_state_name(q->job.state));
 	/* Its whole program is read for these.  Nobody waits yet, and edmd may
 	 * be about to read it, too. */
-	eta_take(&j->eta, j->machine, q->job.n);
+	read_start(j);
 	electrode_take(j);
 	return 0;
 }
@@ -530,6 +544,7 @@ void queue_step(struct jobs *j, int64_t now_us)
 		   !electrode_waits(j)) {
 		load_begin(j, now_us);
 	}
+	forecaster_step(j);
 }
 
 void queue_fini(struct jobs *j)
@@ -539,7 +554,7 @@ void queue_fini(struct jobs *j)
 	calls_write(j);
 	load_fini(j);
 	early_fini(j);
-	eta_fini(&j->eta);
+	forecaster_fini(j);
 	if (!q->job.n || (q->job.begun_us && !queue_is_leaving(q)))
 		return;
 	load_send(j, SHM_UNLOAD, q->job.n, jobs_now_us());

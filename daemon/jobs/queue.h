@@ -32,6 +32,7 @@ struct queue {
 	struct shm_snapshot snap;	/* the last snapshot of that job */
 	double depth_mm;		/* greatest depth of that job */
 	uint32_t run;			/* ... as in struct checkpoint_job */
+	int32_t start_pulses[SHM_NAXES];	/* where its program begins */
 	uint32_t behind;		/* jobs that wait */
 	bool waiting;			/* for "start" */
 	uint32_t promised;		/* the job that was started, or 0 */

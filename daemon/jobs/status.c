@@ -32,6 +32,38 @@ static void name_condition(char to[16], const struct shm_snapshot *s)
 		interp_tech_name(s->cond_letter, s->cond_number, to, 16);
 }
 
+/* The simulated machine may have a quicker clock. */
+static double end_s(const struct jobs *j, double left_s)
+{
+	const double speed = config_machine_is(j->config, MACHINE_MODEL) ?
+			     (double)j->config->sim.speed : 1;
+
+	return left_s >= 0 && j->queue.job.state == JOB_RUNNING ?
+	       (double)jobs_utime() / 1e6 + left_s / speed : 0;
+}
+
+/* Without an estimate the share is that of the way. */
+static void fill_time(struct jobs_lcm_status *w, const struct jobs *j)
+{
+	const struct shm_snapshot *s = &j->queue.snap;
+	struct eta_told t = { .left_s = -1, .min_s = -1, .max_s = -1 };
+
+	if (j->eta.n && j->eta.n == j->queue.job.n)
+		eta_tell(&j->eta, &t);
+	w->job_s = (double)s->job_cycles * (double)s->period_ns / 1e9;
+	w->eta_s = t.left_s;
+	w->eta_min_s = t.min_s;
+	w->eta_max_s = t.max_s;
+	w->eta_by = eta_word(t.by);
+	w->end_s = end_s(j, t.left_s);
+	if (t.by)
+		w->eta_condition = j->eta.forecast.cond[t.cond];
+	w->eta_factor = t.factor;
+	w->progress = t.left_s >= 0 && w->job_s + t.left_s > 0 ?
+		      w->job_s / (w->job_s + t.left_s) :
+		      s->length_mm > 0 ? s->far_mm / s->length_mm : 0;
+}
+
 static void fill_job(struct jobs_lcm_status *w, const struct jobs *j)
 {
 	const struct queue *q = &j->queue;
@@ -44,14 +76,12 @@ static void fill_job(struct jobs_lcm_status *w, const struct jobs *j)
 	w->line = s->line;
 	w->place_mm = s->place_mm;
 	w->length_mm = s->length_mm;
-	w->progress = s->length_mm > 0 ? s->far_mm / s->length_mm : 0;
 	w->depth_mm = s->depth_mm;
 	w->jumps = s->jumps;
 	w->retracts = s->retracts;
 	w->shorts = s->shorts;
 	w->hunts = s->hunts;
-	w->job_s = (double)s->job_cycles * (double)s->period_ns / 1e9;
-	w->eta_s = eta_s(&j->eta, s->far_mm, w->job_s);
+	fill_time(w, j);
 	w->queue_len = q->behind;
 }
 
@@ -118,7 +148,6 @@ void status_tick(struct jobs *j, int64_t now_us)
 	fill_machine(&w, &j->link);
 	w.contour_mm = j->twin.last.measured_mm;
 	w.contour_predicted_mm = j->twin.last.predicted_mm;
-	eta_take(&j->eta, j->machine, j->queue.job.n);
 	fill_job(&w, j);
 	name_condition(condition, &j->queue.snap);
 	w.condition = condition;

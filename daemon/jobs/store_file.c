@@ -135,6 +135,12 @@ static const char *const steps[] = {
 	"CREATE INDEX event_by_time ON event(utime);"
 	"CREATE INDEX event_by_alarm ON event(utime) WHERE kind IN "
 	"('alarm', 'warning', 'lost', 'back');",
+
+	/* What jobs took of their forecast: store_learnt.h. */
+	"CREATE TABLE learnt("
+	" condition TEXT NOT NULL, electrode TEXT NOT NULL, work TEXT NOT NULL,"
+	" passed_s REAL NOT NULL, expected_s REAL NOT NULL,"
+	" jobs INTEGER NOT NULL, PRIMARY KEY(condition, electrode, work));",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

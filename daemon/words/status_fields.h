@@ -35,6 +35,12 @@
 	COUNT(shorts) \
 	NUMBER(job_s) \
 	NUMBER(eta_s) \
+	NUMBER(eta_min_s) \
+	NUMBER(eta_max_s) \
+	WORD(eta_by) \
+	WORD(eta_condition) \
+	NUMBER(eta_factor) \
+	NUMBER(end_s) \
 	COUNT(queue_len) \
 	COUNT(overruns) \
 	COUNT(wake_late_max_us) \

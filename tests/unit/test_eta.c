@@ -1,81 +1,239 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* test_eta.c - promises of daemon/jobs/eta.h */
-#include "compile_help.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "eta.c"
 
-/* 10 mm up and down, 2 mm cut, 4 mm over, 3 mm cut, 15 mm out. */
-static const char *const job = "G0 Z10\nZ0\nM3\nF10\nG1 Z-2\nG0 X4\n"
-			       "G1 Z-5\nM5\nG0 Z10\n";
+/* A hundred parts of a mm: ten positioned, then cut in condition 1 with a
+ * dwell in the middle, then in condition 2. */
+#define PARTS	100
 
-static void measure(struct eta *l, const char *text)
+static struct forecast forecast_of(double first_s, double second_s)
 {
-	struct compiled c = compile_ready("generic");
+	struct forecast f = { .nparts = PARTS, .nconds = 3 };
 
-	compile(&c, text);
-	assert_int_equal(eta_measure(l, &c.p), 0);
-	compile_done(&c);
+	f.part = calloc(PARTS, sizeof(*f.part));
+	f.cond = calloc(3, sizeof(*f.cond));
+	assert_non_null(f.part);
+	for (int i = 0; i < PARTS; i++) {
+		struct forecast_part *p = &f.part[i];
+
+		p->to_mm = i + 1;
+		p->cond = i < 60 ? 1 : 2;
+		p->cut_s = i < 10 ? 0 : i < 60 ? first_s : second_s;
+		p->other_s = i < 10 ? 0.1 : i == 40 ? 30 : 0;
+		f.cut_s += p->cut_s;
+		f.other_s += p->other_s;
+	}
+	return f;
 }
 
-static void what_is_positioned_takes_no_time(void **state)
+static struct eta ready(double first_s, double second_s)
 {
+	struct forecast f = forecast_of(first_s, second_s);
 	struct eta l = { .n = 0 };
 
+	assert_int_equal(eta_give(&l, &f, 7), 0);
+	assert_null(f.part);
+	return l;
+}
+
+static struct eta_told told(const struct eta *l)
+{
+	struct eta_told t;
+
+	eta_tell(l, &t);
+	return t;
+}
+
+/* Go on to @to_mm, where the cut takes @a and @b times what was forecast. */
+static double go(struct eta *l, double from_s, double to_mm, double a, double b)
+{
+	double s = from_s;
+
+	for (uint32_t i = l->at; i < to_mm; i++) {
+		const struct forecast_part *p = &l->forecast.part[i];
+
+		s += p->other_s + p->cut_s * (p->cond == 1 ? a : b);
+		eta_look(l, i + 1, s);
+	}
+	return s;
+}
+
+static void before_the_cut_it_is_the_forecast_and_a_range(void **state)
+{
+	struct eta l = ready(10, 4);
+	struct eta_told t;
+
 	(void)state;
-	measure(&l, job);
-	assert_float_equal(l.cut_mm, 5, 1e-9);
-	assert_float_equal(eta_s(&l, 21, 60), 240, 1e-6);	/* 1 of 5 mm */
-	assert_float_equal(eta_s(&l, 22, 60), 90, 1e-6);	/* 2 of 5 mm */
-	assert_float_equal(eta_s(&l, 24, 60), 90, 1e-6);	/* moved over */
-	assert_float_equal(eta_s(&l, 28, 60), 15, 1e-6);	/* 4 of 5 mm */
-	assert_float_equal(eta_s(&l, 29, 60), 0, 1e-6);
-	assert_float_equal(eta_s(&l, 44, 60), 0, 1e-6);
+	eta_look(&l, 0, 0);
+	t = told(&l);
+	assert_int_equal(t.by, ETA_FORECAST);
+	assert_float_equal(t.left_s, 500 + 160 + 31, 1e-6);
+	assert_float_equal(t.min_s, 330 + 31, 1e-6);
+	assert_float_equal(t.max_s, 1320 + 31, 1e-6);
 	eta_fini(&l);
 }
 
-static void before_the_first_cut_there_is_no_estimate(void **state)
+static void what_is_positioned_has_no_factor(void **state)
 {
-	struct eta l = { .n = 0 };
+	struct eta l = ready(10, 4);
 
 	(void)state;
-	assert_float_equal(eta_s(&l, 1, 60), -1, 0);
-	measure(&l, job);
-	assert_float_equal(eta_s(&l, 0, 0), -1, 0);
-	assert_float_equal(eta_s(&l, 20, 60), -1, 0);
-	assert_float_equal(eta_s(&l, 21, 0), -1, 0);
+	go(&l, 0, 10, 1, 1);
+	assert_float_equal(told(&l).left_s, 690, 1e-6);
+	assert_int_equal(told(&l).by, ETA_FORECAST);
 	eta_fini(&l);
 }
 
-static void a_job_that_cuts_nothing_has_no_estimate(void **state)
+/* Half is removed of what was believed: at a sixth of the cut it is known. */
+static void a_process_that_is_slower_is_noticed(void **state)
 {
-	struct eta l = { .n = 0 };
+	struct eta l = ready(10, 4);
+	struct eta_told t;
 
 	(void)state;
-	measure(&l, "G0 X5\nG4 P1\n");
-	assert_float_equal(eta_s(&l, 2, 60), -1, 0);
-	measure(&l, "M3\n");
-	assert_float_equal(eta_s(&l, 0, 60), -1, 0);
+	go(&l, 0, 20, 2, 2);
+	t = told(&l);
+	assert_int_equal(t.by, ETA_CUT);
+	assert_int_equal(t.cond, 1);
+	assert_in_range((int)(t.factor * 100), 175, 200);
+	assert_in_range((int)t.left_s, 1000, 1150);	/* truth: 1150 */
+	assert_true(t.min_s < t.left_s && t.left_s < t.max_s);
 	eta_fini(&l);
 }
 
-static void a_touch_is_not_cut(void **state)
+static void each_condition_has_its_own_factor(void **state)
 {
+	struct eta l = ready(10, 10);
+	double s;
+
+	(void)state;
+	s = go(&l, 0, 60, 1, 1);
+	assert_float_equal(told(&l).left_s, 400, 20);
+	go(&l, s, 80, 1, 3);
+	assert_in_range((int)told(&l).left_s, 540, 620);	/* truth: 600 */
+	assert_int_equal(told(&l).cond, 2);
+	eta_fini(&l);
+}
+
+/* At one place the time still goes down, and never below what is to come. */
+static void a_dwell_counts_down(void **state)
+{
+	struct eta l = ready(10, 4);
+	double s, was;
+
+	(void)state;
+	s = go(&l, 0, 40, 1, 1);
+	was = told(&l).left_s;
+	eta_look(&l, 40, s + 25);
+	assert_float_equal(told(&l).left_s, was - 25, 1e-6);
+	eta_fini(&l);
+}
+
+/* It waits, and what it says rises only as it gets too late. */
+static void a_stall_does_not_rise_at_once(void **state)
+{
+	struct eta l = ready(10, 4);
+	double s, was;
+
+	(void)state;
+	s = go(&l, 0, 30, 1, 1);
+	was = told(&l).left_s;
+	for (double more = 0; more <= 20; more++) {
+		eta_look(&l, 30, s + more);
+		assert_true(told(&l).left_s <= was * 1.1);
+	}
+	assert_false(eta_rose(&l));
+	eta_look(&l, 30, s + 300);
+	assert_true(told(&l).left_s > was * 1.1);
+	assert_true(eta_rose(&l));
+	assert_false(eta_rose(&l));	/* told once */
+	eta_fini(&l);
+}
+
+static void what_was_learnt_is_where_it_begins(void **state)
+{
+	struct eta l = ready(10, 4);
+	struct eta_told t;
+
+	(void)state;
+	eta_learnt(&l, 1, 2);
+	eta_look(&l, 0, 0);
+	t = told(&l);
+	assert_int_equal(t.by, ETA_LEARNT);
+	assert_float_equal(t.left_s, 1000 + 160 + 31, 1e-6);
+	assert_true(t.max_s < 1.3 * t.left_s);
+	go(&l, 0, 40, 2, 1);
+	assert_float_equal(told(&l).factor, 2, 0.01);
+	/* What is learnt from this job is of the forecast itself. */
+	assert_true(fabs(l.cond[1].passed_s - 2 * l.cond[1].expected_s) < 1e-6);
+	eta_fini(&l);
+}
+
+/* A service that comes back in the middle of a job sees it for the first
+ * time. */
+static void it_may_come_in_the_middle(void **state)
+{
+	struct eta a = ready(10, 4), b = ready(10, 4);
+	const double s = go(&a, 0, 50, 2, 2);
+
+	(void)state;
+	eta_look(&b, 50, s);
+	assert_float_equal(told(&b).left_s, told(&a).left_s, 15);
+	eta_fini(&a);
+	eta_fini(&b);
+}
+
+static void a_job_that_cuts_nothing_has_an_estimate(void **state)
+{
+	struct eta l = ready(0, 0);
+
+	(void)state;
+	eta_look(&l, 0, 0);
+	assert_float_equal(told(&l).left_s, 31, 1e-6);
+	go(&l, 0, 50, 1, 1);
+	assert_float_equal(told(&l).left_s, 0, 1e-6);
+	eta_fini(&l);
+}
+
+static void without_a_forecast_there_is_none(void **state)
+{
+	struct forecast f = { .why_not = "no-contact" };
 	struct eta l = { .n = 0 };
 
 	(void)state;
-	measure(&l, "F10\nG80 Z-5\nG92 Z0\nM3\nG1 Z-2\n");
-	assert_float_equal(l.cut_mm, 2, 1e-9);
+	eta_look(&l, 3, 4);
+	assert_float_equal(told(&l).left_s, -1, 0);
+	assert_int_equal(eta_give(&l, &f, 7), 0);
+	eta_look(&l, 3, 4);
+	assert_int_equal(told(&l).by, ETA_NONE);
+	assert_false(eta_rose(&l));
 	eta_fini(&l);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(what_is_positioned_takes_no_time),
-		cmocka_unit_test(before_the_first_cut_there_is_no_estimate),
-		cmocka_unit_test(a_job_that_cuts_nothing_has_no_estimate),
-		cmocka_unit_test(a_touch_is_not_cut),
+		cmocka_unit_test(before_the_cut_it_is_the_forecast_and_a_range),
+		cmocka_unit_test(what_is_positioned_has_no_factor),
+		cmocka_unit_test(a_process_that_is_slower_is_noticed),
+		cmocka_unit_test(each_condition_has_its_own_factor),
+		cmocka_unit_test(a_dwell_counts_down),
+		cmocka_unit_test(a_stall_does_not_rise_at_once),
+		cmocka_unit_test(what_was_learnt_is_where_it_begins),
+		cmocka_unit_test(it_may_come_in_the_middle),
+		cmocka_unit_test(a_job_that_cuts_nothing_has_an_estimate),
+		cmocka_unit_test(without_a_forecast_there_is_none),
 	};
 
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	return cmocka_run_group_tests_name("jobs/eta", tests, NULL, NULL);
 }

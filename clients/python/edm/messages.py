@@ -18,7 +18,7 @@ SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
-STATUS = bytes.fromhex("d99ba36c295f786d")
+STATUS = bytes.fromhex("be7bb53d7d8583fe")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -222,6 +222,12 @@ class Status:
     shorts: int = 0
     job_s: float = 0.0
     eta_s: float = 0.0
+    eta_min_s: float = 0.0
+    eta_max_s: float = 0.0
+    eta_by: str = ""
+    eta_condition: str = ""
+    eta_factor: float = 0.0
+    end_s: float = 0.0
     queue_len: int = 0
     overruns: int = 0
     wake_late_max_us: int = 0
@@ -265,6 +271,12 @@ class Status:
                 + put.int32_t(self.shorts)
                 + put.double(self.job_s)
                 + put.double(self.eta_s)
+                + put.double(self.eta_min_s)
+                + put.double(self.eta_max_s)
+                + put.string(self.eta_by)
+                + put.string(self.eta_condition)
+                + put.double(self.eta_factor)
+                + put.double(self.end_s)
                 + put.int32_t(self.queue_len)
                 + put.int32_t(self.overruns)
                 + put.int32_t(self.wake_late_max_us)
@@ -308,6 +320,12 @@ class Status:
             r.int32_t(),
             r.int32_t(),
             r.int32_t(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.string(),
+            r.string(),
             r.double(),
             r.double(),
             r.int32_t(),

@@ -5,7 +5,7 @@ import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { isRunning, whyNot } from "./can";
 import { Strip } from "./chart";
-import { duration, number, parse, short } from "./format";
+import { clock, duration, moment, number, parse, short } from "./format";
 import { link, type Point } from "./link";
 import { useLine } from "./lines";
 import { Card, Choice, Key, NumberField, PressKey, Sheet, act } from "./parts";
@@ -65,12 +65,31 @@ function Positions(): JSX.Element {
 	</ul></Card>;
 }
 
+/* Before ground was cut it is a range. */
+function left(): string {
+	const s = link.state;
+	return s.eta < 0 || s.etaBy === "cut" ? duration(s.eta) : `${duration(s.etaMin)}\u2013${duration(s.etaMax)}`;
+}
+
+// When it ends, and by what that is known.
+function TimeNote(): JSX.Element | null {
+	const s = link.state, words: string[] = [];
+	if (s.eta < 0) return null;
+	if (s.end > 0) words.push(t("time.end", { at: s.end * 1000 - Date.now() > 20 * 3600e3 ? moment(s.end * 1000) : clock(s.end * 1000) }));
+	const what = s.etaCondition || t("time.cutting"), of = number(s.etaFactor, 2);
+	if (s.etaBy === "forecast") words.push(t("time.forecast"));
+	else if (s.etaBy === "learnt") words.push(t("time.learnt", { what, of }));
+	else if (Math.abs(s.etaFactor - 1) > 0.1) words.push(t("time.cut", { what, of }));
+	return words.length ? <p class="timenote">{words.join(t("time.and"))}</p> : null;
+}
+
 function Sums(): JSX.Element {
-	const s = link.state, share = s.length > 0 ? s.far / s.length * 100 : 0;
+	const s = link.state;
 	return <Card class="sums" label={t("cut.done")}>
 		<div class="three"><div><span>{t("cut.depth")}</span><p><b>{number(s.depth, 3)}</b> <u>mm</u></p></div>
-			<div><span>{t("cut.done")}</span><p><b>{number(share, 1)}</b> <u>%</u></p></div>
-			<div><span>{t("cut.left")}</span><p><b>{duration(s.eta)}</b></p></div></div>
+			<div><span>{t("cut.done")}</span><p><b>{number(s.progress * 100, 1)}</b> <u>%</u></p></div>
+			<div><span>{t("cut.left")}</span><p><b>{left()}</b></p></div></div>
+		<TimeNote />
 		<div class="counts"><span>{t("cut.jumps")} <b>{s.jumps}</b></span><span>{t("cut.retracts")} <b>{s.retracts}</b></span>
 			<span>{t("cut.shorts")} <b>{s.shorts}</b></span><span>{t("cut.time")} <b>{duration(s.jobS)}</b></span>{s.electrode > 0 && <span id="held">{t("cut.electrode")} <b>{s.electrode}</b></span>}</div>
 	</Card>;
@@ -152,11 +171,9 @@ export function Cut(): JSX.Element {
 	const [open, set] = useState("");
 	const s = link.state;
 	const shown = s.program > 0 && s.loaded;
-	const back = Math.max(0, s.far - s.place), whole = s.length || 1;
 	const line = useLine(shown ? s.job : "", s.line);
 	const foot = shown ? <div class="progress"><p><code title={line}>{line}</code><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm</span></p>
-		<div class="bar"><i class="done" style={{ width: `${Math.min(100, s.far / whole * 100)}%` }} />
-			{back > 0.0005 && <i class="back" style={{ left: `${s.place / whole * 100}%`, width: `${back / whole * 100}%` }} />}</div></div> : null;
+		<div class="bar"><i class="done" style={{ width: `${Math.min(100, s.progress * 100)}%` }} /></div></div> : null;
 	return <>
 		<div class="cut-grid">
 			<section class="card view" aria-label={t("cut.path")}>

@@ -29,7 +29,8 @@ export interface State {
 	overruns: number; lateMaxUs: number; tookMaxUs: number; periodUs: number;
 	jobS: number; condition: string; values: Record<string, number>;
 	set: string[]; jobs: boolean; job: string; jobName: string; jobState: string;
-	lines: number; queue: number; eta: number; store: string;
+	lines: number; queue: number; eta: number; etaMin: number; etaMax: number; etaBy: string; etaCondition: string; etaFactor: number; end: number; progress: number;
+	store: string;
 	interrupted: string; lost: string; faults: string; hunts: number;
 	electrode: number; stand: string; standOf: number; asks: boolean;
 }
@@ -53,7 +54,8 @@ const EMPTY: State = {
 	program: 0, unhomed: 0, limit: 0, jumps: 0, retracts: 0, shorts: 0,
 	overruns: 0, lateMaxUs: 0, tookMaxUs: 0, periodUs: 0, jobS: 0, condition: "",
 	values: {}, set: [], jobs: false, job: "", jobName: "", jobState: "",
-	lines: 0, queue: 0, eta: -1, store: "", interrupted: "", lost: "",
+	lines: 0, queue: 0, eta: -1, etaMin: -1, etaMax: -1, etaBy: "", etaCondition: "", etaFactor: 0, end: 0, progress: 0,
+	store: "", interrupted: "", lost: "",
 	faults: "", hunts: 0, electrode: 0, stand: "", standOf: 0, asks: false,
 };
 

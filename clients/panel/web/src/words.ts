@@ -83,6 +83,8 @@ export const en = {
 	"cut.servo": "servo", "cut.servochip": "Servo", "cut.runs": "runs already", "cut.open": "open", "cut.sparks": "sparks on",
 	"cut.nosparks": "sparks off", "cut.back": "back", "cut.forward": "forward",
 	"cut.still": "still", "cut.togo": "to go", "cut.depth": "Depth", "cut.done": "Done",
+	"time.end": "ends {at}", "time.forecast": "by forecast", "time.cutting": "cutting", "time.and": ", ",
+	"time.cut": "{what} takes {of} times its forecast", "time.learnt": "as learnt: {what} takes {of} times its forecast",
 	"cut.left": "Left", "cut.jumps": "Jumps", "cut.retracts": "Retracts",
 	"cut.shorts": "Shorts", "cut.time": "Time", "cut.line": "line", "cut.nojob": "No program",
 	"cut.condition": "Condition", "cut.peak": "Peak", "cut.onoff": "On / off",

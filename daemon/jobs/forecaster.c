@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* forecaster.c - runs the job in the machine in virtual time */
+#include "forecaster.h"
+
+#include "jobs.h"
+#include "jobs_log.h"
+#include "store_learnt.h"
+#include "compiling.h"
+#include "thread.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#define LEARN_S		20.0		/* less of a condition is not learnt
+					 * from */
+
+struct forecasting {
+	pthread_t thread;
+	atomic_bool ends;
+	int fd;				/* readable when the thread is done */
+	sd_event_source *source;
+	struct jobs *jobs;
+	const struct machine_config *config;
+	char machine[SHM_NAME_MAX];
+	uint32_t n;
+	int err;
+	struct forecast forecast;
+	char electrode[64], work[64];
+};
+
+/* -- The thread ------------------------------------------------------------ */
+
+static void name_materials(struct forecasting *f)
+{
+	struct config_tech tech;
+
+	if (config_tech_load(&tech, f->config, NULL) == 0 && tech.table) {
+		snprintf(f->electrode, sizeof(f->electrode), "%.63s",
+			 tech.table->electrode);
+		snprintf(f->work, sizeof(f->work), "%.63s",
+			 tech.table->workpiece);
+	}
+	config_tech_free(&tech);
+}
+
+static int forecaster_work(struct forecasting *f)
+{
+	struct interp_program p;
+	const void *block;
+	size_t bytes;
+	int err = shm_program_read(&block, &bytes, f->machine, f->n);
+
+	if (err < 0)
+		return err;
+	err = interp_program_map(&p, block, bytes);
+	if (err == 0)
+		err = forecast_make(&f->forecast, f->config, &p, &f->ends);
+	shm_program_unmap(block, bytes);
+	return err;
+}
+
+static void *forecaster_main(void *arg)
+{
+	struct forecasting *f = arg;
+	uint64_t one = 1;
+
+	/* The loop goes first, as in compiler.c. */
+	pthread_setschedparam(pthread_self(), SCHED_BATCH,
+			      &(struct sched_param) { .sched_priority = 0 });
+	name_materials(f);
+	f->err = forecaster_work(f);
+	/* Writing 1 to an eventfd whose count is 0 cannot fail. */
+	if (write(f->fd, &one, sizeof(one)) != sizeof(one))
+		abort();
+	return NULL;
+}
+
+/* -- The loop -------------------------------------------------------------- */
+
+static void forecasting_free(struct forecasting *f)
+{
+	sd_event_source_unref(f->source);
+	if (f->fd >= 0)
+		close(f->fd);
+	forecast_free(&f->forecast);
+	free(f);
+}
+
+static void take_learnt(struct jobs *j)
+{
+	struct eta *l = &j->eta;
+
+	for (uint32_t i = 0; l->cond && i < l->forecast.nconds; i++)
+		if (l->cond[i].all_s > 0)
+			eta_learnt(l, i, store_learnt_factor(j->store,
+				&(struct store_learnt) {
+					l->forecast.cond[i],
+					j->forecaster.electrode,
+					j->forecaster.work,
+				}));
+}
+
+/* The one in the holder is known better than what a table was made for. */
+static void take_materials(struct jobs *j, const struct forecasting *f)
+{
+	const uint32_t held = electrode_held(j);
+	struct forecaster *to = &j->forecaster;
+	struct store_electrode e;
+
+	memcpy(to->electrode, f->electrode, sizeof(to->electrode));
+	memcpy(to->work, f->work, sizeof(to->work));
+	if (held && store_electrode_find(j->store, held, &e) == 0 &&
+	    *e.material)
+		snprintf(to->electrode, sizeof(to->electrode), "%s",
+			 e.material);
+}
+
+static void take(struct jobs *j, struct forecasting *f)
+{
+	if (f->forecast.why_not)
+		log_notice("forecast: job %s has none: %s", j->queue.job.id,
+			   f->forecast.why_not);
+	else if (f->err < 0)
+		log_notice("forecast: job %s has none: %s", j->queue.job.id,
+			   strerror(-f->err));
+	else
+		log_info("forecast: job %s takes %.0f s, %.0f s of them cut",
+			 j->queue.job.id, f->forecast.cut_s +
+			 f->forecast.other_s, f->forecast.cut_s);
+	take_materials(j, f);
+	if (f->err == 0 && eta_give(&j->eta, &f->forecast, f->n) == 0)
+		take_learnt(j);
+}
+
+static int on_forecast(sd_event_source *source, int fd, uint32_t events,
+		       void *arg)
+{
+	struct forecasting *f = arg;
+	struct jobs *j = f->jobs;
+
+	(void)source, (void)fd, (void)events;
+	pthread_join(f->thread, NULL);
+	j->forecaster.now = NULL;
+	if (j->queue.job.n == f->n)
+		take(j, f);
+	forecasting_free(f);
+	return 0;
+}
+
+static int begin(struct jobs *j, uint32_t n)
+{
+	struct forecasting *f = calloc(1, sizeof(*f));
+	int err;
+
+	if (!f)
+		return -ENOMEM;
+	f->jobs = j;
+	f->config = j->config;
+	f->n = n;
+	snprintf(f->machine, sizeof(f->machine), "%s", j->machine);
+	f->fd = eventfd(0, EFD_CLOEXEC);
+	err = f->fd < 0 ? -errno :
+	      sd_event_add_io(j->event, &f->source, f->fd, EPOLLIN,
+			      on_forecast, f);
+	if (err >= 0)
+		err = thread_start(&f->thread, &(struct thread) {
+			.name = "jobs-forecast", .run = forecaster_main,
+			.arg = f,
+		});
+	if (err < 0)
+		forecasting_free(f);
+	else
+		j->forecaster.now = f;
+	return err;
+}
+
+static void follow(struct jobs *j)
+{
+	const struct shm_snapshot *s = &j->queue.snap;
+	struct eta_told t;
+
+	eta_look(&j->eta, s->far_mm, (double)s->job_cycles *
+		 (double)s->period_ns / 1e9);
+	if (!eta_rose(&j->eta))
+		return;
+	eta_tell(&j->eta, &t);
+	jobs_note(j, &(struct jobs_note) {
+		.kind = "longer", .job = j->queue.job.id,
+		.place_mm = s->place_mm,
+	}, "job %s takes longer: %s takes %.2f times its forecast; %.0f min "
+		  "are left", j->queue.job.name,
+		  *j->eta.forecast.cond[t.cond] ?
+		  j->eta.forecast.cond[t.cond] : "cutting", t.factor,
+		  t.left_s / 60);
+}
+
+void forecaster_step(struct jobs *j)
+{
+	const struct queue *q = &j->queue;
+	struct forecaster *f = &j->forecaster;
+
+	if (j->eta.n && j->eta.n != q->job.n)
+		eta_fini(&j->eta);
+	if (f->now && f->now->n != q->job.n)
+		atomic_store(&f->now->ends, true);
+	if (!q->job.n)
+		f->of = 0;
+	else if (!f->now && f->of != q->job.n && q->snap.program == q->job.n) {
+		f->of = q->job.n;
+		begin(j, q->job.n);
+	}
+	if (j->eta.n && q->snap.program == q->job.n)
+		follow(j);
+}
+
+void forecaster_learn(struct jobs *j)
+{
+	const struct eta *l = &j->eta;
+
+	if (l->n != j->queue.job.n)
+		return;
+	for (uint32_t i = 0; l->cond && i < l->forecast.nconds; i++)
+		if (l->cond[i].expected_s >= LEARN_S)
+			store_learnt_add(j->store, &(struct store_learnt) {
+				l->forecast.cond[i], j->forecaster.electrode,
+				j->forecaster.work,
+			}, l->cond[i].passed_s, l->cond[i].expected_s);
+}
+
+/* It looks at `ends` some hundred times a second. */
+void forecaster_fini(struct jobs *j)
+{
+	struct forecasting *f = j->forecaster.now;
+
+	if (f) {
+		atomic_store(&f->ends, true);
+		pthread_join(f->thread, NULL);
+		forecasting_free(f);
+	}
+	j->forecaster.now = NULL;
+	eta_fini(&j->eta);
+}

@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* forecast.c - how long a job will take, and to each place of its path */
+#include "forecast.h"
+#include "virtual.h"
+
+#include "interp/cursor.h"
+#include "interp/tech_table.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+#define LOOK_CYCLES	4096		/* between two looks at `ends` */
+#define STEP_S		0.01		/* of a part, at first */
+
+struct run {
+	struct virtual v;
+	struct forecast *to;
+	const atomic_bool *ends;
+	double period_s, step_s;
+	struct forecast_part now;	/* the part that is being measured */
+	uint64_t counted;		/* periods of the job */
+	double far_mm;
+};
+
+static void put_together(struct run *r)
+{
+	struct forecast *f = r->to;
+	uint32_t n = 0;
+
+	for (uint32_t i = 0; i + 1 < f->nparts; i += 2) {
+		const struct forecast_part *a = &f->part[i];
+		const struct forecast_part *b = &f->part[i + 1];
+
+		f->part[n++] = (struct forecast_part) {
+			.to_mm = b->to_mm, .cut_s = a->cut_s + b->cut_s,
+			.other_s = a->other_s + b->other_s,
+			.cond = a->cut_s > b->cut_s ? a->cond : b->cond,
+		};
+	}
+	f->nparts = n;
+	r->step_s *= 2;
+}
+
+static void end_part(struct run *r, double at_mm)
+{
+	struct forecast *f = r->to;
+
+	r->now.to_mm = at_mm;
+	f->cut_s += r->now.cut_s;
+	f->other_s += r->now.other_s;
+	f->part[f->nparts++] = r->now;
+	r->now = (struct forecast_part) { .cond = r->now.cond };
+	if (f->nparts == FORECAST_PARTS)
+		put_together(r);
+}
+
+/* Through air, and where no sparks are, the process has no say. */
+static bool is_cut(const struct cycle *c)
+{
+	const double at_mm = interp_cursor_place_mm(&c->cursor);
+
+	return !(c->cursor.seg.flags & INTERP_SEG_UNCUT) && !c->job.dwelling &&
+	       !(c->state == STATE_APPROACH && at_mm >= c->far_mm);
+}
+
+/* A part ends where the path goes on, so that the time for which it stands at a
+ * place belongs to one part. */
+static void measure(struct run *r)
+{
+	const struct cycle *c = &r->v.cycle;
+	const double s = (double)(c->totals.cycles - r->counted) * r->period_s;
+	const bool cut = is_cut(c);
+	struct forecast_part *p = &r->now;
+	const bool other = cut ? c->cursor.seg.cond != p->cond || !p->cut_s :
+			   !p->other_s;
+
+	r->counted = c->totals.cycles;
+	if (c->far_mm > r->far_mm &&
+	    p->cut_s + p->other_s >= (other ? r->step_s / 8 : r->step_s))
+		end_part(r, r->far_mm);
+	r->far_mm = fmax(r->far_mm, c->far_mm);
+	if (cut) {
+		p->cut_s += s;
+		p->cond = c->cursor.seg.cond;
+	} else {
+		p->other_s += s;
+	}
+}
+
+static int go(struct run *r)
+{
+	const struct cycle *c = &r->v.cycle;
+
+	for (uint64_t n = 1; !virtual_is_over(&r->v); n++) {
+		if (n % LOOK_CYCLES == 0 && atomic_load(r->ends))
+			return -ECANCELED;
+		if ((double)n * r->period_s > FORECAST_S_MAX) {
+			r->to->why_not = "it takes too long";
+			return 0;
+		}
+		if (virtual_stands(&r->v))
+			virtual_go_on(&r->v);
+		virtual_step(&r->v);
+		measure(r);
+	}
+	end_part(r, INFINITY);
+	if (c->state == STATE_FAULT)
+		r->to->why_not = fault_name(c->fault.first);
+	return 0;
+}
+
+static int begin(struct forecast *f, const struct interp_program *p)
+{
+	f->nconds = p->head->nconds;
+	f->part = calloc(FORECAST_PARTS, sizeof(*f->part));
+	f->cond = calloc(f->nconds, sizeof(*f->cond));
+	if (!f->part || !f->cond)
+		return -ENOMEM;
+	for (uint32_t i = 0; i < f->nconds; i++)
+		if (p->conds[i].letter)
+			interp_tech_name(p->conds[i].letter,
+					 p->conds[i].number, f->cond[i],
+					 sizeof(f->cond[i]));
+	return 0;
+}
+
+int forecast_make(struct forecast *ret, const struct machine_config *c,
+		  const struct interp_program *p, const atomic_bool *ends)
+{
+	struct run *r = calloc(1, sizeof(*r));
+	int err;
+
+	*ret = (struct forecast) { .nparts = 0 };
+	if (!r)
+		return -ENOMEM;
+	r->to = ret;
+	r->ends = ends;
+	r->period_s = (double)config_period_ns(c) * 1e-9;
+	r->step_s = STEP_S;
+	err = begin(ret, p);
+	if (err == 0)
+		err = virtual_open(&r->v, &(struct virtual_options) {
+			.config = c, .program = p,
+			.seed = (uint64_t)c->sim.seed,
+		});
+	if (err == 0)
+		err = go(r);
+	virtual_close(&r->v);
+	free(r);
+	if (err)
+		forecast_free(ret);
+	else if (ret->why_not)
+		ret->nparts = 0;
+	return err;
+}
+
+void forecast_free(struct forecast *f)
+{
+	free(f->part);
+	free(f->cond);
+	*f = (struct forecast) { .nparts = 0 };
+}

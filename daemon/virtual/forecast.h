@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * forecast.h - how long a job will take, and to each place of its path
+ *
+ * The job is run once on the simulated machine of the machine file.  The path
+ * is divided into parts, and each part has the time during which the farthest
+ * place reached was in it: what went into cutting, with the jumps and retracts
+ * of it, and the rest.  Time does not run while a job is held.
+ *
+ * Threads: one object belongs to one thread.
+ */
+#ifndef VIRTUAL_FORECAST_H
+#define VIRTUAL_FORECAST_H
+
+#include "config.h"
+
+#include "interp/program.h"
+
+#include <stdatomic.h>
+
+#define FORECAST_PARTS	4096		/* at most; neighbours of more are put
+					 * together */
+#define FORECAST_S_MAX	1e6		/* a job that takes longer has none */
+
+struct forecast_part {
+	double to_mm;			/* it ends there, and the next begins */
+	double cut_s, other_s;
+	uint32_t cond;			/* in which it is cut: program's index */
+};
+
+/* All 0: there is none.  Read, do not write. */
+struct forecast {
+	struct forecast_part *part;
+	uint32_t nparts;
+	double cut_s, other_s;		/* of all parts */
+	uint32_t nconds;
+	char (*cond)[16];		/* their names; "" is that of 0 */
+	const char *why_not;		/* it has no parts; NULL: it has */
+};
+
+/**
+ * forecast_make() - run @p; @ret is filled and has to be freed.
+ * @ends: it gives up when this becomes true; any thread may set it
+ *
+ * A job without end, or that the simulated machine cannot carry out, has no
+ * parts, but a reason.
+ *
+ * Return: 0; -ENOMEM; -ECANCELED.
+ */
+int forecast_make(struct forecast *ret, const struct machine_config *c,
+		  const struct interp_program *p, const atomic_bool *ends);
+void forecast_free(struct forecast *f);
+
+#endif /* VIRTUAL_FORECAST_H */

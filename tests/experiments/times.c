@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * times.c - the time left that is told, and the true one
+ *
+ * Twelve kinds of job are run in virtual time, on a machine whose process
+ * removes half, all and twice of what its forecast believes.  A hundred times
+ * in each, from a tenth of its time on, what eta.h and the way that was cut say
+ * is compared with the truth.  Nothing here depends on how fast the host is.
+ *
+ * The last four jobs were written when eta.h was done.
+ */
+#include "compiling.h"
+#include "eta.h"
+#include "forecast.h"
+#include "tried/length_eta.h"
+#include "virtual.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COUNT(x)	(sizeof(x) / sizeof((x)[0]))
+#define SAMPLES_MAX	100000
+#define HELD_OUT	8		/* the first of these */
+#define NEAR		0.2		/* of the truth: good */
+
+struct kind {
+	const char *name, *machine, *dialect;
+	const char *text;		/* or, ... */
+	const char *file;		/* ... of the examples */
+};
+
+#define TECH	"examples/copper-steel.tech"
+#define SINKER	"examples/machine.ini"
+#define WIRE	"examples/wire.ini"
+#define FIVE	"examples/five-axis.ini"
+
+static const struct kind kinds[] = {
+	{ "cavity, three conditions", SINKER, "generic", NULL,
+	  "examples/cavity.ngc" },
+	{ "planetary cycles", SINKER, "generic", NULL, "examples/orbit.ngc" },
+	{ "deep sinking", SINKER, "generic",
+	  "G0 Z2\nZ0\nM3\nC120\nG1 Z-6 F600\nG0 Z2\nM30\n", NULL },
+	{ "wire, taper", WIRE, "iso", NULL, "examples/taper.ngc" },
+	{ "wire, plate, rough and skims", WIRE, "iso", NULL,
+	  "examples/wire-plate.ngc" },
+	{ "five axes", FIVE, "generic", NULL, "examples/five-axis.ngc" },
+	{ "four cavities, two conditions", SINKER, "generic",
+	  "M3\nC120\nG0 X0 Y0 Z1\nZ0\nG1 Z-.6 F60\nG0 Z5\nX80 Y20\nZ0\n"
+	  "G1 Z-.6\nG0 Z5\nX-80 Y-20\nZ0\nG1 Z-.6\nC100\nG1 Z-.7\nG0 Z5\n"
+	  "X60 Y-60\nZ0\nG1 Z-.4\nG0 Z5\nM30\n", NULL },
+	{ "sequence Q1", SINKER, "generic",
+	  "G0 Z2\nZ0\nM3\nF60\nG120 P1 Z-1.5\nG0 Z2\nM30\n", NULL },
+	/* Held out. */
+	{ "NURBS in the plane", SINKER, "generic",
+	  "G0 Z2\nZ0\nM3\nC110\nG1 Z-.2 F60\n"
+	  "G6.2 P4 K0 X0 Y0 R1 F60\nK0 X3 Y4\nK0 X7 Y-4\nK0 X10 Y0\n"
+	  "K1\nK1\nK1\nK1\nG0 Z2\nM30\n", NULL },
+	{ "two electrodes, stops, dwells", SINKER, "generic",
+	  "T1\nG0 Z2\nZ0\nM3\nC120\nG1 Z-1 F60\nG4 P30\nG0 Z3\nM0\nM5\n"
+	  "T2\nM3\nG0 X30\nZ0\nC100\nG1 Z-.8\nG4 P60\nG0 Z5\nM30\n", NULL },
+	{ "wire, gear", WIRE, "iso", NULL, "examples/wire-gear.ngc" },
+	{ "helix down, then a vector", SINKER, "generic",
+	  "G0 X2 Y0 Z2\nZ0\nM3\nC120\nG3 X2 Y0 Z-.5 I-2 J0 F60\n"
+	  "C110\nG1 X0 Y0 Z-1\nG0 Z2\nM30\n", NULL },
+};
+
+static const double removals[] = { 0.5, 1, 2 };
+
+struct job {
+	struct machine_config config;
+	struct interp_program program;
+	void *block;
+};
+
+struct sample {
+	double far_mm, job_s;
+};
+
+/* How far each of them was off. */
+struct score {
+	int n, near, rose;
+	double worst, median;
+	double off[SAMPLES_MAX];
+};
+
+static struct score by_way, by_time;
+
+static void fail(const char *of, const char *why)
+{
+	fprintf(stderr, "times: %s: %s\n", of, why);
+	exit(1);
+}
+
+static char *read_file(const char *path, size_t *bytes)
+{
+	char *text = malloc(1 << 20);
+	FILE *f = fopen(path, "r");
+
+	if (!f || !text)
+		fail(path, "cannot be read");
+	*bytes = fread(text, 1, 1 << 20, f);
+	fclose(f);
+	return text;
+}
+
+static void compile(struct job *job, const struct kind *k)
+{
+	struct config_compiling of;
+	struct config_tech tech = { .table = NULL };
+	struct interp_diag d = { .found = "" };
+	struct interp_text text = {
+		.dialect = interp_dialect_by_name(k->dialect),
+	};
+	struct interp_build_about about = { .name = k->name };
+	struct interp_build *b;
+	char *at = k->file ? read_file(k->file, &text.bytes) : NULL;
+	size_t bytes;
+
+	config_defaults(&job->config);
+	if (config_read(&job->config, k->machine, &d) < 0 ||
+	    config_check_kinematics(&job->config, &d) < 0)
+		fail(k->machine, d.found);
+	if (strcmp(k->machine, SINKER) == 0)
+		config_tech_load(&tech, &job->config, TECH);
+	config_compiling(&job->config, &tech, &of);
+	text.at = at ? at : k->text;
+	text.bytes = at ? text.bytes : strlen(k->text);
+	b = interp_build_create(&of.build);
+	if (!b || interp_compile(&text, &of.text, b, &about.lines, &d) < 0) {
+		fprintf(stderr, "%u: ", d.line);
+		fail(k->name, d.found);
+	}
+	job->block = interp_build_take(b, &about, &bytes);
+	interp_build_destroy(b);
+	if (!job->block || interp_program_map(&job->program, job->block, bytes))
+		fail(k->name, "no program");
+	config_tech_free(&tech);
+	free(at);
+}
+
+/* The true job: another seed, another removal.  A sample every @every_s.
+ * Return: how many. */
+static int run(const struct job *job, double removal, struct sample *to)
+{
+	static struct virtual v;
+	struct machine_config c = job->config;
+	const double every_s = 0.1;
+	double period_s;
+	int n = 0;
+
+	c.sim.removal_mm3_min *= removal;
+	v = (struct virtual) { .in = { .gap_v = 0 } };
+	if (virtual_open(&v, &(struct virtual_options) {
+			.config = &c, .program = &job->program, .seed = 77 }))
+		fail("run", "it does not begin");
+	period_s = (double)v.cycle.config.period_ns * 1e-9;
+	while (!virtual_is_over(&v)) {
+		const double s = (double)v.cycle.totals.cycles * period_s;
+
+		if (n < SAMPLES_MAX && (n == 0 ||
+					s >= to[n - 1].job_s + every_s))
+			to[n++] = (struct sample) { v.cycle.far_mm, s };
+		if (virtual_stands(&v))
+			virtual_go_on(&v);
+		virtual_step(&v);
+	}
+	if (v.cycle.outcome != OUTCOME_DONE)
+		fail("run", fault_name(v.cycle.fault.first));
+	virtual_close(&v);
+	return n;
+}
+
+static int by_size(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+
+	return (x > y) - (x < y);
+}
+
+static void mark(struct score *s, double told_s, double true_s)
+{
+	const double off = told_s < 0 ? 99 : fabs(told_s - true_s) / true_s;
+
+	s->off[s->n++] = off;
+	s->near += off <= NEAR;
+	s->worst = fmax(s->worst, off);
+}
+
+static void close_score(struct score *s)
+{
+	qsort(s->off, (size_t)s->n, sizeof(s->off[0]), by_size);
+	s->median = s->off[s->n / 2];
+}
+
+/* From the first tenth to where no more than two seconds are left. */
+static bool counts(double s, double all_s)
+{
+	return s >= all_s / 10 && all_s - s > 2;
+}
+
+static void compare(const struct job *job, const struct sample *t, int n)
+{
+	static const atomic_bool never;
+	struct forecast f;
+	struct eta eta = { .n = 0 };
+	struct length_eta way = { .nparts = 0 };
+	const double all_s = t[n - 1].job_s;
+
+	by_way = by_time = (struct score) { .n = 0 };
+	if (forecast_make(&f, &job->config, &job->program, &never) < 0 ||
+	    f.why_not || eta_give(&eta, &f, 1) < 0 ||
+	    length_eta_measure(&way, &job->program) < 0)
+		fail("forecast", f.why_not ? f.why_not : "no memory");
+	for (int i = 0; i < n; i++) {
+		struct eta_told told;
+
+		eta_look(&eta, t[i].far_mm, t[i].job_s);
+		eta_tell(&eta, &told);
+		by_time.rose += eta_rose(&eta);
+		if (!counts(t[i].job_s, all_s))
+			continue;
+		mark(&by_time, told.left_s, all_s - t[i].job_s);
+		mark(&by_way, length_eta_s(&way, t[i].far_mm, t[i].job_s),
+		     all_s - t[i].job_s);
+	}
+	close_score(&by_way);
+	close_score(&by_time);
+	eta_fini(&eta);
+	length_eta_fini(&way);
+}
+
+/* times NAME: only jobs with that in their name. */
+int main(int argc, char **argv)
+{
+	static struct sample samples[SAMPLES_MAX];
+	static struct job job;
+	struct { double way, time, all; } sum[2] = { { 0 } };
+
+	puts("| job | removes | takes, s | by way: median off | within 20 % | "
+	     "by time: median off | within 20 % | told longer |\n"
+	     "|---|---|---|---|---|---|---|---|");
+	for (size_t i = 0; i < COUNT(kinds); i++) {
+		if (argc > 1 && !strstr(kinds[i].name, argv[1]))
+			continue;
+		compile(&job, &kinds[i]);
+		for (size_t k = 0; k < COUNT(removals); k++) {
+			const int n = run(&job, removals[k], samples);
+
+			compare(&job, samples, n);
+			printf("| %s | %g | %.0f | %.0f %% | %.0f %% | %.1f %% "
+			       "| %.0f %% | %d |\n", kinds[i].name, removals[k],
+			       samples[n - 1].job_s, by_way.median * 100,
+			       by_way.near * 100.0 / by_way.n,
+			       by_time.median * 100,
+			       by_time.near * 100.0 / by_time.n, by_time.rose);
+			sum[i >= HELD_OUT].way += by_way.near * 100.0 /
+						  by_way.n;
+			sum[i >= HELD_OUT].time += by_time.near * 100.0 /
+						   by_time.n;
+			sum[i >= HELD_OUT].all++;
+		}
+		free(job.block);
+	}
+	for (int i = 0; i < 2; i++)
+		if (sum[i].all > 0)
+			printf("%sWithin 20 %% of the truth, %s: %.1f %% of the "
+			       "samples by way, %.1f %% by time.\n", i ? "" :
+			       "\n", i ? "jobs held out" : "the first eight "
+			       "jobs", sum[i].way / sum[i].all,
+			       sum[i].time / sum[i].all);
+	return 0;
+}

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The time left, on a machine that removes half of what is believed.
+
+No test here asks how fast the host is: all times are those of the job.
+"""
+
+import pathlib
+import re
+import sqlite3
+
+import pytest
+import rig
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+SINK = b"G21 G90\nG0 Z1\nZ0\nM3\nF60\nC110\nG1 Z-0.8\nG0 Z1\nM30\n"
+BELIEVED = 12.75
+
+
+@pytest.fixture
+def slow(tmp_path):
+    """Both programs; edmd's process removes half of what the other thinks."""
+    text = (ROOT / "examples/machine.ini").read_text()
+    with rig.Machine(tmp_path) as m:
+        text = re.sub(r"(?m)^name =.*$", f"name = {m.name}", text)
+        text = re.sub(r"(?m)^speed *=.*$", "speed = 50", text)
+        # Beside the folder of this machine file.
+        text += f"\n[tech]\ntable = {ROOT}/examples/copper-steel.tech\n"
+
+        def write(removal):
+            m.config.write_text(re.sub(
+                r"(?m)^removal_mm3_min *=[^;\n]*",
+                f"removal_mm3_min = {removal} ", text))
+
+        write(BELIEVED / 2)
+        m.start_edmd()
+        write(BELIEVED)
+        m.start_jobs("--store", str(m.store))
+        m.client.status_where(lambda s: s.daemon == "ok")
+        yield m
+
+
+def held(m, job, text=SINK):
+    """A job that is loaded, and whose forecast is there."""
+    c = m.client
+    assert c.submit(text, job, hold=True).code == 0
+    return c.status_where(lambda s: s.job == job and s.eta_s >= 0, timeout=30)
+
+
+def test_before_the_cut_it_is_a_range_and_then_the_truth(slow):
+    c = slow.client
+    s = held(slow, "one")
+    assert s.eta_by == "forecast"
+    assert 0 < s.eta_min_s < 0.8 * s.eta_s
+    assert s.eta_max_s > 1.2 * s.eta_s
+    assert s.end_s == 0                     # it is held
+    assert s.progress == 0
+    n = len(c.statuses)
+    assert c.ask("start").code == 0
+    all_s = c.job_where("one", "done", timeout=60)["job_s"]
+    assert all_s > 1.5 * s.eta_s            # it was believed to be quicker
+    late = [t for t in c.statuses[n:]
+            if t.job == "one" and all_s * 0.3 < t.job_s < all_s * 0.95]
+    for t in late:
+        assert t.eta_by == "cut"
+        assert t.job_s + t.eta_s == pytest.approx(all_s, rel=0.3)
+        assert t.progress == pytest.approx(t.job_s / all_s, abs=0.15)
+    told = [e.text for e in c.events if e.kind == "longer"]
+    assert told and "C110 takes 1." in told[-1]
+
+
+def test_the_next_job_begins_with_what_was_learnt(slow):
+    c = slow.client
+    first = held(slow, "one")
+    assert c.ask("start").code == 0
+    all_s = c.job_where("one", "done", timeout=60)["job_s"]
+    s = held(slow, "two")
+    assert s.eta_by == "learnt"
+    assert s.eta_condition == "C110"
+    assert s.eta_factor > 1.4
+    assert s.eta_s > 1.4 * first.eta_s
+    assert s.eta_s == pytest.approx(all_s, rel=0.2)
+    assert s.eta_max_s < 1.4 * s.eta_s      # and it is surer
+
+
+def test_a_service_that_comes_back_knows_it_again(slow):
+    c = slow.client
+    held(slow, "one")
+    assert c.ask("start").code == 0
+    c.status_where(lambda s: s.eta_by == "cut" and s.progress > 0.3,
+                   timeout=60)
+    assert c.ask("hold").code == 0
+    before = c.status_where(lambda s: s.job_state == "held")
+    slow.end("jobs")
+    slow.start_jobs("--store", str(slow.store))
+    after = c.status_where(lambda s: s.eta_s >= 0, timeout=30)
+    assert after.eta_by == "cut"
+    assert after.eta_s == pytest.approx(before.eta_s, rel=0.15)
+
+
+def test_a_store_of_before_has_the_table(slow):
+    """The step that makes it is taken once."""
+    db = sqlite3.connect(next(slow.store.glob("*.db")))
+    assert db.execute("SELECT count(*) FROM learnt").fetchone() == (0,)
