@@ -97,6 +97,7 @@ IO	:= $(filter-out daemon/io/gpiod$(if $(filter 1,$(GPIOD)),2,1).c,\
 	   $(wildcard daemon/io/*.c))
 GPIOD_INC := $(shell $(PKG_CONFIG) --cflags libgpiod 2>/dev/null)
 LIBGPIOD := $(shell $(PKG_CONFIG) --libs libgpiod 2>/dev/null || echo -lgpiod)
+MODBUS_INC := $(shell $(PKG_CONFIG) --cflags libmodbus 2>/dev/null || echo -I/usr/include/modbus)
 CONFIG	:= $(wildcard daemon/config/*.c)
 COMPILING := $(wildcard daemon/compiling/*.c)
 # The values in force, for the programs that show them: edmd-jobs, edm-panel.
@@ -135,7 +136,7 @@ INC_model	= $(MODEL_H) -Ilibinterp/model $(CORE_H)
 WORDS_H		= -Idaemon/words
 INC_words	= $(WORDS_H) $(CORE_H)
 INC_rt		= -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
-INC_io		= -Idaemon/io -Icommon -Idaemon/config $(WORDS_H) $(CORE_H) $(GPIOD_INC)
+INC_io		= -Idaemon/io -Icommon -Idaemon/config $(WORDS_H) $(CORE_H) $(GPIOD_INC) $(MODBUS_INC)
 INC_config	= -Idaemon/config -Idaemon/rt -Idaemon/io $(WORDS_H) $(CORE_H)
 INC_compiling	= -Idaemon/compiling -Idaemon/config $(WORDS_H) $(CORE_H) $(COMPILE_H)
 INC_shm		= -Idaemon/shm -Icommon $(WORDS_H)
@@ -170,7 +171,7 @@ WORDS_O	 := $(call obj,$(WORDS))
 TEXT_O	 := $(B)/daemon/words/process_text.o
 RT_O	 := $(call obj,$(RT)) $(filter-out $(TEXT_O),$(WORDS_O))
 IO_O	 := $(call obj,$(IO))
-SIM_IO_O := $(filter-out %/can402_lines.o %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o %/chips.o %/generator_lines.o %/generator_open.o,$(IO_O))
+SIM_IO_O := $(filter-out %/can402_lines.o %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o %/chips.o %/generator_lines.o %/generator_modbus.o %/generator_open.o,$(IO_O))
 LINES_O	 := $(filter %/gpiod1.o %/gpiod2.o,$(IO_O))
 CONFIG_O := $(call obj,$(CONFIG)) $(TEXT_O)
 COMPILING_O := $(call obj,$(COMPILING))
@@ -321,7 +322,7 @@ $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(VIRTUAL_O) $(COMPILING_O) $(CONFIG_O) 
 	$(call link,-linih -ljansson -lpthread -lnlopt -lm)
 
 $(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
-	$(call link,-linih -lsystemd $(LIBGPIOD) -lpthread -lm)
+	$(call link,-linih -lsystemd $(LIBGPIOD) -lmodbus -lpthread -lm)
 
 $(B)/edmd-jobs: $(call obj,$(JOBS) $(VALUES) $(LOGGER)) $(SIGN_O) $(SHM_O) $(VIRTUAL_O) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -ljansson -llcm -lsqlite3 -lsodium -lsystemd -lm)
@@ -384,7 +385,7 @@ $(B)/unit/test_ground: UNIT_LIBS = -Wl,--wrap=interp_program_any_at
 $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 
 $(B)/unit/%: $(B)/tests/unit/%.o $(SETUP_O) $(SHM_O) $(VIRTUAL_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-lcmocka -linih $(LIBGPIOD) $(UNIT_LIBS) -lpthread -lnlopt -lm)
+	$(call link,-lcmocka -linih $(LIBGPIOD) -lmodbus $(UNIT_LIBS) -lpthread -lnlopt -lm)
 
 $(B)/tests/bench/plan.o: INC_bench += -Iclients/plan
 $(B)/bench/plan: $(B)/tests/bench/plan.o $(filter-out %/main.o,$(call obj,$(PLAN))) $(PLAN_CC:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
@@ -392,7 +393,7 @@ $(B)/bench/plan: $(B)/tests/bench/plan.o $(filter-out %/main.o,$(call obj,$(PLAN
 
 $(B)/bench/wait: $(SETUP_O)
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-linih $(LIBGPIOD) $(if $(findstring curves,$@),-lsisl) -lpthread -lnlopt -lm)
+	$(call link,-linih $(LIBGPIOD) -lmodbus $(if $(findstring curves,$@),-lsisl) -lpthread -lnlopt -lm)
 
 $(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
 	$(call link,$(if $(findstring sisl,$@),-lsisl) -lnlopt -lm)

@@ -132,7 +132,8 @@ static size_t steps_of(json_t *f)
 static double value_at(json_t *f, size_t i)
 {
 	json_t *values = json_object_get(f, "values");
-	const double min = ctl_number_of(f, "min"), max = ctl_number_of(f, "max");
+	const double min = ctl_number_of(f, "min");
+	const double max = ctl_number_of(f, "max");
 	const double step = ctl_number_of(f, "step");
 
 	return json_array_size(values) ?
@@ -190,7 +191,8 @@ static bool same(double a, double b)
 	return fabs(a - b) <= 1e-6 * fmax(fabs(a), fabs(b));
 }
 
-/* Wait until the generator has it, or until it is late.  @ret: as it is then. */
+/* Wait until the generator has it, or until it is late.  @ret: as it is
+ * then. */
 static int settle(struct ctl *c, size_t at, double value, json_t **ret,
 		  bool *ret_has)
 {
@@ -273,7 +275,8 @@ static int walk_end(struct walk *w, int err)
 
 	/* Interrupted, nobody waits for the answer. */
 	if (talk_interrupted())
-		talk_send(w->ctl->talk, &back, w->ctl->timeout_s, on_back, NULL);
+		talk_send(w->ctl->talk, &back, w->ctl->timeout_s, on_back,
+			  NULL);
 	else if (err != EX_UNAVAILABLE && try(w->ctl, "", NAN) == 0 && err)
 		fprintf(stderr, "edmctl: generator walk: not at its end; all "
 			"is as it was before\n");
@@ -299,9 +302,9 @@ static int walk(struct ctl *c)
 	fields = json_object_get(o, "fields");
 	w.steps = count_steps(c, fields);
 	if (w.steps == 0) {
-		fprintf(stderr, "edmctl: generator walk: the generator tells no "
-			"value that reaches it; [generator] told_peak_a = ..., "
-			"or edmctl generator set FIELD VALUE and look\n");
+		fprintf(stderr, "edmctl: generator walk: the generator tells "
+			"no value that reaches it; [generator] told_peak_a = "
+			"..., or edmctl generator set FIELD VALUE and look\n");
 		json_decref(o);
 		return EX_CONFIG;
 	}

@@ -11,6 +11,9 @@
 			"5 6 codes 2 4 8 16; one line for what is on or off"
 #define WANTED_CAN	"can ID byte N, as can 1009 byte 2 bits 16 scale 0.1; " \
 			"or bit N, of the byte"
+#define WANTED_REGISTER	"register N, as register 10 scale 0.1, or as " \
+			"register 11 codes 2 4 8 16; bit N for what is on " \
+			"or off; told_ also input N"
 
 struct check {
 	const struct machine_config *c;
@@ -33,33 +36,56 @@ static const char *key_name(int field, bool told, char *buf, size_t size)
 	return buf;
 }
 
+/* A way of which nothing is wrong but the company that it is in. */
+static const char *misfit(const struct check *q, int field, bool told,
+			  const struct config_way *w)
+{
+	const int interface = config_generator_interface(q->c);
+
+	if (w->kind == WAY_NONE)
+		return NULL;
+	if (interface != GENERATOR_LINES && interface != GENERATOR_CAN &&
+	    interface != GENERATOR_MODBUS)
+		return "is of a generator without interface lines, can or "
+		       "modbus";
+	if (w->kind == WAY_CAN && interface != GENERATOR_CAN)
+		return "is a frame, and the interface is not can";
+	if (w->kind == WAY_REGISTER && interface != GENERATOR_MODBUS)
+		return "is a register, and the interface is not modbus";
+	if (told && w->kind == WAY_LINES)
+		return "is told by lines, which are outputs";
+	if (!told && w->input)
+		return "is an input register, which nobody can write";
+	if (w->kind == WAY_REGISTER &&
+	    (field == PROCESS_SPARK || field == PROCESS_SENSE))
+		return "is a register, and those take a round trip: it must "
+		       "be a line";
+	if (!told && config_generator_gpio(q->c, field))
+		return "is a second way: gpio has a line for it";
+	return NULL;
+}
+
 static int check_way(struct check *q, int field, bool told)
 {
 	const char *text = told ? q->c->generator.told[field] :
 				  q->c->generator.field[field];
-	const int interface = config_generator_interface(q->c);
+	const bool modbus = config_generator_interface(q->c) ==
+			    GENERATOR_MODBUS;
 	struct config_way w;
 	const char *wrong;
 	char key[24];
 
-	if (!told && strcmp(text, "auto") == 0)
+	if (strcmp(text, "auto") == 0)
 		return 0;
 	key_name(field, told, key, sizeof(key));
 	wrong = config_way_read(text, field, &w);
-	if (!wrong && w.kind != WAY_NONE && interface != GENERATOR_LINES &&
-	    interface != GENERATOR_CAN)
-		wrong = "is of a generator without interface lines or can";
-	if (!wrong && w.kind == WAY_CAN && interface == GENERATOR_LINES)
-		wrong = "is a frame, and the interface is lines";
-	if (!wrong && told && w.kind == WAY_LINES)
-		wrong = "is told by lines, which are outputs";
-	if (!wrong && !told && w.kind != WAY_NONE &&
-	    config_generator_gpio(q->c, field))
-		wrong = "is a second way: gpio has a line for it";
+	if (!wrong)
+		wrong = misfit(q, field, told, &w);
 	if (!wrong)
 		return 0;
 	interp_diag_say(q->diag, "generator.%s \"%.60s\" %s; none, %s; %s",
-			key, text, wrong, WANTED_LINES, WANTED_CAN);
+			key, text, wrong, WANTED_LINES,
+			modbus ? WANTED_REGISTER : WANTED_CAN);
 	return refuse(q, key);
 }
 
@@ -134,7 +160,8 @@ static int check_lines(struct check *q, int field)
 /* The second byte of the usual frame counts the frames. */
 static bool is_count(const struct check *q, const struct config_way *w)
 {
-	return w->id == (uint16_t)q->c->generator.can_id &&
+	return w->kind == WAY_CAN &&
+	       w->id == (uint16_t)q->c->generator.can_id &&
 	       w->bit < 16 && w->bit + w->bits > 8;
 }
 
@@ -144,20 +171,21 @@ static int check_bits(struct check *q, int field, bool told)
 	char key[24];
 
 	config_way(q->c, field, told, &w);
-	if (w.kind != WAY_CAN)
+	if (w.kind != WAY_CAN && w.kind != WAY_REGISTER)
 		return 0;
 	key_name(field, told, key, sizeof(key));
 	for (int i = 0; i < field; i++) {
 		if (told && i >= INTERP_NGENERATOR)
 			break;
 		config_way(q->c, i, told, &x);
-		if (x.kind != WAY_CAN || x.id != w.id ||
+		if (x.kind != w.kind || x.id != w.id || x.input != w.input ||
 		    x.bit + x.bits <= w.bit || w.bit + w.bits <= x.bit)
 			continue;
 		interp_diag_say(q->diag, "generator.%s and generator.%s%s "
-				"have bits of frame %u in common; a place of "
-				"its own for each", key, told ? "told_" : "",
-				process_name(i), w.id);
+				"have bits of %s %u in common; a place of its "
+				"own for each", key, told ? "told_" : "",
+				process_name(i), w.kind == WAY_CAN ? "frame" :
+				"register", w.id);
 		return refuse(q, key);
 	}
 	if (!told && is_count(q, &w)) {
@@ -225,6 +253,75 @@ static int check_guard(struct check *q, int line, const char *by,
 	return refuse(q, "spark");
 }
 
+/* -- Modbus ---------------------------------------------------------------- */
+
+static bool has_registers(const struct machine_config *c)
+{
+	struct config_way w;
+
+	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+		config_way(c, i, false, &w);
+		if (w.kind == WAY_REGISTER)
+			return true;
+	}
+	return false;
+}
+
+static int check_modbus_at(struct check *q)
+{
+	const struct config_generator *g = &q->c->generator;
+	struct config_modbus_at at;
+	const char *wrong = config_modbus_read(g->modbus, &at);
+
+	if (wrong) {
+		interp_diag_say(q->diag, "generator.modbus \"%s\" %s; "
+				CONFIG_MODBUS_WANTED, g->modbus, wrong);
+		return refuse(q, "modbus");
+	}
+	if (at.serial && !(g->unit >= 1 && g->unit <= 247)) {
+		interp_diag_say(q->diag, "generator.modbus_unit %.0f on a "
+				"serial port; 1 to 247", g->unit);
+		return refuse(q, "modbus_unit");
+	}
+	return 0;
+}
+
+/* One answer that is lost is no fault yet. */
+static int check_modbus_silence(struct check *q)
+{
+	const struct config_generator *g = &q->c->generator;
+	const double least = 2 * g->timeout_ms + g->every_ms;
+
+	if (g->silent_ms >= least)
+		return 0;
+	interp_diag_say(q->diag, "generator.silent_ms %g is less than two "
+			"modbus_timeout_ms and a modbus_every_ms; at least %g",
+			g->silent_ms, least);
+	return refuse(q, "silent_ms");
+}
+
+static int check_modbus(struct check *q)
+{
+	struct config_way spark;
+
+	if (config_generator_interface(q->c) != GENERATOR_MODBUS)
+		return 0;
+	if (check_modbus_at(q) || check_modbus_silence(q))
+		return -EINVAL;
+	if (!has_registers(q->c)) {
+		interp_diag_say(q->diag, "generator.interface is modbus and no "
+				"field has a register; peak_a = %s",
+				WANTED_REGISTER);
+		return refuse(q, "interface");
+	}
+	config_way(q->c, PROCESS_SPARK, false, &spark);
+	if (spark.kind != WAY_NONE || !config_backend(q->c)->has_gap(q->c))
+		return 0;
+	interp_diag_say(q->diag, "generator.spark reaches nothing; spark = %s",
+			"line N, or [gpio] spark: a line ends sparks at once");
+	return refuse(q, "spark");
+}
+
 static int check_interface(struct check *q)
 {
 	const bool model = config_machine_is(q->c, MACHINE_MODEL);
@@ -234,7 +331,7 @@ static int check_interface(struct check *q)
 		return 0;
 	interp_diag_say(q->diag, "generator.interface and machine.backend do "
 			"not agree; interface = sim with backend sim, %s",
-			"and none, lines or can with the others");
+			"and none, lines, can or modbus with the others");
 	return refuse(q, "interface");
 }
 
@@ -262,7 +359,8 @@ int config_check_generator(const struct machine_config *c,
 		    check_ids(&q, i, false) || check_ids(&q, i, true))
 			return -EINVAL;
 	}
-	return check_guard(&q, LINE_WATCHDOG, c->gpio.watchdog_by,
+	return check_modbus(&q) ||
+	       check_guard(&q, LINE_WATCHDOG, c->gpio.watchdog_by,
 			   "watchdog") ||
 	       check_guard(&q, LINE_ESTOP, c->gpio.estop_by, "estop") ?
 	       -EINVAL : 0;

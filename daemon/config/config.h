@@ -70,6 +70,7 @@ enum config_interface {
 	GENERATOR_AUTO,			/* the simulated one with backend sim,
 					 * else none */
 	GENERATOR_SIM, GENERATOR_NONE, GENERATOR_LINES, GENERATOR_CAN,
+	GENERATOR_MODBUS,
 	GENERATOR_NINTERFACES
 };
 
@@ -85,7 +86,14 @@ struct config_generator {
 	char by_hand[96];		/* names of fields; "none" */
 	double settle_ms, polarity_ms;
 	double silent_ms, confirm_s;
+	char modbus[64];		/* config_modbus_read() */
+	double baud;
+	int parity;			/* enum config_parity */
+	double unit;			/* the address of the slave */
+	double timeout_ms, every_ms;
 };
+
+enum config_parity { PARITY_EVEN, PARITY_NONE, PARITY_ODD };
 
 /* [axis.*] brake: who holds the axis while its drive is off. */
 enum config_brake {
@@ -411,18 +419,22 @@ enum config_way_kind {
 	WAY_OWN,			/* the machine's backend does it */
 	WAY_CAN,
 	WAY_LINES,
+	WAY_REGISTER,			/* of a Modbus slave */
 };
 
 /* How one field reaches the generator, or is told by it. */
 struct config_way {
 	enum config_way_kind kind;
 	struct process_delivers gives;
-	/* CAN: in the frames with this identifier. */
+	/* CAN: in the frames with this identifier.  A register: its address in
+	 * a request, from 0. */
 	uint16_t id;
-	uint8_t bit, bits;		/* first bit of 64, and how many */
-	double scale;			/* of one count */
-	/* Lines: the first is the lowest bit; value i of `values` is that of
-	 * the code i. */
+	bool input;			/* an input register, to be read only */
+	uint8_t bit, bits;		/* first bit of 64, or 16; and how
+					 * many */
+	double scale;			/* of one count; 0: it is a code */
+	/* Lines: the first is the lowest bit.  These and a register may have
+	 * codes: `code` i is the value of the code i. */
 	uint8_t nlines, ncodes;
 	struct config_line_at line[CONFIG_WAY_LINES];
 	double code[PROCESS_VALUES_MAX];
@@ -434,6 +446,21 @@ struct config_way {
  */
 void config_way(const struct machine_config *c, int field, bool told,
 		struct config_way *ret);
+
+/* Where a Modbus slave is. */
+struct config_modbus_at {
+	bool serial;
+	char host[48];			/* the address, or the device */
+	char port[8];
+};
+
+/** config_modbus_read() - a device as /dev/ttyUSB0, or ADDRESS:PORT; an IPv6
+ *  address in []. Return: what is wrong with it, or NULL. */
+const char *config_modbus_read(const char *text, struct config_modbus_at *ret);
+
+#define CONFIG_MODBUS_WANTED	"a serial port of this host, as /dev/ttyUSB0, " \
+				"or ADDRESS:PORT in numbers, as " \
+				"192.168.1.5:502 or [fd00::5]:502"
 
 /** config_delivers() - what of field @field reaches the generator. */
 void config_delivers(const struct machine_config *c, int field,

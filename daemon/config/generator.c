@@ -71,13 +71,24 @@ static void by_itself(const struct machine_config *c, int field,
 		config_way_all(field, false, &ret->gives);
 }
 
+/* A register that is written can be read. */
+static void told_by_itself(const struct machine_config *c, int field,
+			   struct config_way *ret)
+{
+	config_way(c, field, false, ret);
+	if (ret->kind != WAY_REGISTER)
+		*ret = (struct config_way) { .kind = WAY_NONE };
+}
+
 void config_way(const struct machine_config *c, int field, bool told,
 		struct config_way *ret)
 {
 	const char *text = told ? c->generator.told[field] :
 				  c->generator.field[field];
 
-	if (!told && strcmp(text, "auto") == 0)
+	if (strcmp(text, "auto") == 0 && told)
+		told_by_itself(c, field, ret);
+	else if (strcmp(text, "auto") == 0)
 		by_itself(c, field, ret);
 	else if (config_way_read(text, field, ret))
 		*ret = (struct config_way) { .kind = WAY_NONE };

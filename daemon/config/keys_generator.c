@@ -7,8 +7,15 @@
 const char *config_interface_word(int i)
 {
 	static const char *const words[] = {
-		"auto", "sim", "none", "lines", "can"
+		"auto", "sim", "none", "lines", "can", "modbus"
 	};
+
+	return WORD_OF(words, i);
+}
+
+static const char *parity_word(int i)
+{
+	static const char *const words[] = { "even", "none", "odd" };
 
 	return WORD_OF(words, i);
 }
@@ -16,10 +23,11 @@ const char *config_interface_word(int i)
 #define WAY(key, i, what) \
 	STRING(GENERATOR, key, "auto", generator.field[i], what)
 #define TOLD(key, i) \
-	STRING(GENERATOR, "told_" key, "none", \
+	STRING(GENERATOR, "told_" key, "auto", \
 	       generator.told[INTERP_TECH_##i], \
 	       "where the generator tells the " key " that is in force, as " \
-	       "can 1011 byte 0 bits 16 scale 0.1")
+	       "can 1011 byte 0 bits 16 scale 0.1, or as register 30 scale " \
+	       "0.1; auto: in the register that is written, else none")
 
 /* clang-format off */
 static const struct config_key row[] = {
@@ -33,7 +41,8 @@ static const struct config_key row[] = {
 	      "of its own"),
 	WAY("peak_a", INTERP_TECH_PEAK_A,
 	    "how the peak current reaches it, as lines 20 21 26 weights 3 6 "
-	    "12, or as can 1009 byte 2 bits 16 scale 0.1; none: not at all; "
+	    "12, as can 1009 byte 2 bits 16 scale 0.1, or as register 10 "
+	    "scale 0.1; none: not at all; "
 	    "auto: as the interface has it"),
 	WAY("on_us", INTERP_TECH_ON_US, "the same for the on time"),
 	WAY("off_us", INTERP_TECH_OFF_US,
@@ -66,6 +75,22 @@ static const struct config_key row[] = {
 	       AT(generator.silent_ms),
 	       "without a frame of one that tells for so long: fault "
 	       "generator"),
+	STRING(GENERATOR, "modbus", "none", generator.modbus,
+	       "where the Modbus slave is: a serial port as /dev/ttyUSB0, or "
+	       "ADDRESS:PORT as 192.168.1.5:502"),
+	WHOLE(GENERATOR, "modbus_unit", "", "1", 0, 255, AT(generator.unit),
+	      "its address: 1 to 247; over TCP also 0 and 255"),
+	WHOLE(GENERATOR, "modbus_baud", "1/s", "19200", 300, 921600,
+	      AT(generator.baud), "speed of the serial port"),
+	WORDS(GENERATOR, "modbus_parity", "even", AT(generator.parity),
+	      parity_word, "of the serial port; none: two stop bits"),
+	NUMBER(GENERATOR, "modbus_timeout_ms", "ms", "50", 1, 10000,
+	       AT(generator.timeout_ms),
+	       "an answer begins in this time, beside the time that the bytes "
+	       "of a serial port take"),
+	NUMBER(GENERATOR, "modbus_every_ms", "ms", "50", 1, 10000,
+	       AT(generator.every_ms),
+	       "what the slave tells is read so often"),
 	NUMBER(GENERATOR, "confirm_s", "s", "2", 0.01, 600,
 	       AT(generator.confirm_s),
 	       "without its word for so long that a change is in force: fault "

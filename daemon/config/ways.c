@@ -4,6 +4,7 @@
  */
 #include "keys.h"
 
+#include <arpa/inet.h>
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -15,7 +16,7 @@ const char *config_way_word(enum config_way_kind kind)
 {
 	static const char *const words[] = {
 		[WAY_NONE] = "none", [WAY_OWN] = "own", [WAY_CAN] = "can",
-		[WAY_LINES] = "lines",
+		[WAY_LINES] = "lines", [WAY_REGISTER] = "register",
 	};
 
 	return words[kind];
@@ -98,14 +99,14 @@ static const char *read_lines(struct words *w, struct config_way *ret)
 	return ret->nlines ? NULL : "has no line";
 }
 
-static const char *read_codes(struct words *w, struct config_way *ret)
+static const char *read_codes(struct words *w, uint32_t most,
+			      struct config_way *ret)
 {
-	const uint32_t most = 1u << ret->nlines;
 	double v;
 
 	while (next(w)) {
 		if (ret->ncodes == most)
-			return "has more codes than its lines make";
+			return "has more codes than its lines or bits make";
 		if (!number(w->word, &v))
 			return "has a code that is no number";
 		ret->code[ret->ncodes++] = v;
@@ -166,38 +167,57 @@ static const char *read_way_lines(struct words *w, int field,
 	}
 	if (!*w->word)
 		return "has neither weights nor codes";
-	wrong = weights ? read_weights(w, ret) : read_codes(w, ret);
+	wrong = weights ? read_weights(w, ret) :
+			  read_codes(w, 1u << ret->nlines, ret);
 	return wrong ? wrong : give_codes(ret, field);
 }
 
-static const char *read_can_pair(struct words *w, struct config_way *ret,
-				 double at[2])
-{
-	char key[CONFIG_WAY_WORD];
-	double v;
+/* A place in bits: what may be said of it. */
+struct place {
+	double byte, bit;		/* -1: not said */
+	int bytes, bit_max, bits_max;
+};
 
-	memcpy(key, w->word, sizeof(key));
-	if (!next(w) || !number(w->word, &v))
-		return "has a word without its number";
-	if (strcmp(key, "byte") == 0 && v >= 0 && v <= 7 && v == floor(v))
-		at[0] = v;
-	else if (strcmp(key, "bit") == 0 && v >= 0 && v <= 7 && v == floor(v))
-		at[1] = v;
-	else if (strcmp(key, "bits") == 0 && v >= 1 && v <= 32 &&
-		 v == floor(v))
+static bool is_whole(double v, double min, double max)
+{
+	return v >= min && v <= max && v == floor(v);
+}
+
+static bool read_pair(const char *key, double v, struct place *at,
+		      struct config_way *ret)
+{
+	if (strcmp(key, "byte") == 0 && is_whole(v, 0, at->bytes - 1))
+		at->byte = v;
+	else if (strcmp(key, "bit") == 0 && is_whole(v, 0, at->bit_max))
+		at->bit = v;
+	else if (strcmp(key, "bits") == 0 && is_whole(v, 1, at->bits_max))
 		ret->bits = (uint8_t)v;
 	else if (strcmp(key, "scale") == 0 && v > 0)
 		ret->scale = v;
 	else
-		return "has a word that is none of byte 0 to 7, bit 0 to 7, "
-		       "bits 1 to 32, scale above 0";
-	return NULL;
+		return false;
+	return true;
 }
 
-/* The count with all bits set says: the generator's own setting. */
+static bool read_place(struct words *w, struct place *at,
+		       struct config_way *ret)
+{
+	char key[CONFIG_WAY_WORD];
+	double v;
+
+	while (next(w) && strcmp(w->word, "codes") != 0) {
+		memcpy(key, w->word, sizeof(key));
+		if (!next(w) || !number(w->word, &v) ||
+		    !read_pair(key, v, at, ret))
+			return false;
+	}
+	return true;
+}
+
+/* In a frame the count with all bits set says: the generator's own setting. */
 static void give_counts(struct config_way *w, int field)
 {
-	const double counts = exp2(w->bits) - 2;
+	const double counts = exp2(w->bits) - (w->kind == WAY_CAN ? 2 : 1);
 	const double least = ceil(range_min(field) / w->scale);
 
 	w->gives.step = w->scale;
@@ -205,37 +225,73 @@ static void give_counts(struct config_way *w, int field)
 	w->gives.max = fmin(counts * w->scale, range_max(field));
 }
 
+/* Not codes. */
+static const char *give_place(struct config_way *w, int field)
+{
+	if (is_switch(field) != (w->bits == 1))
+		return is_switch(field) ? "is of a field that is on or off" :
+					  "is one bit of a number";
+	if (is_switch(field))
+		give_switch(&w->gives, field);
+	else
+		give_counts(w, field);
+	return w->gives.n || w->gives.max > w->gives.min ? NULL :
+	       "cannot hold a value of the field";
+}
+
 static const char *read_can(struct words *w, int field, struct config_way *ret)
 {
-	double id, at[2] = { -1, 0 };
-	const char *wrong;
+	struct place at = { -1, 0, 8, 7, 32 };
+	double id;
 
-	if (!next(w) || !number(w->word, &id) || id < 1 || id > 2047 ||
-	    id != floor(id))
+	if (!next(w) || !number(w->word, &id) || !is_whole(id, 1, 2047))
 		return "has no identifier of 1 to 2047";
 	*ret = (struct config_way) {
 		.kind = WAY_CAN, .gives.there = true, .id = (uint16_t)id,
 		.bits = is_switch(field) ? 1 : NATURAL_BITS, .scale = 1,
 	};
-	while (next(w)) {
-		wrong = read_can_pair(w, ret, at);
-		if (wrong)
-			return wrong;
-	}
-	if (at[0] < 0)
+	if (!read_place(w, &at, ret) || *w->word)
+		return "has a word that is none of byte 0 to 7, bit 0 to 7, "
+		       "bits 1 to 32, scale above 0";
+	if (at.byte < 0)
 		return "has no byte";
-	ret->bit = (uint8_t)(8 * at[0] + at[1]);
+	ret->bit = (uint8_t)(8 * at.byte + at.bit);
 	if (ret->bit + ret->bits > 64)
 		return "goes beyond the eighth byte";
-	if (is_switch(field) != (ret->bits == 1))
-		return is_switch(field) ? "is of a field that is on or off" :
-					  "is one bit of a number";
+	return give_place(ret, field);
+}
+
+static const char *read_register(struct words *w, int field,
+				 struct config_way *ret)
+{
+	struct place at = { -1, 0, 0, 15, 16 };
+	const bool input = strcmp(w->word, "input") == 0;
+	const char *wrong;
+	double id;
+
+	if (!next(w) || !number(w->word, &id) || !is_whole(id, 0, 65535))
+		return "has no address of 0 to 65535";
+	*ret = (struct config_way) {
+		.kind = WAY_REGISTER, .gives.there = true, .input = input,
+		.id = (uint16_t)id, .scale = 1,
+		.bits = is_switch(field) ? 1 : NATURAL_BITS,
+	};
+	if (!read_place(w, &at, ret))
+		return "has a word that is none of bit 0 to 15, bits 1 to 16, "
+		       "scale above 0, codes";
+	ret->bit = (uint8_t)at.bit;
+	if (at.bit > 0 && ret->bits == NATURAL_BITS)
+		ret->bits = (uint8_t)(NATURAL_BITS - ret->bit);
+	if (ret->bit + ret->bits > 16)
+		return "goes beyond the sixteenth bit";
+	if (!*w->word)
+		return give_place(ret, field);
 	if (is_switch(field))
-		give_switch(&ret->gives, field);
-	else
-		give_counts(ret, field);
-	return ret->gives.n || ret->gives.max > ret->gives.min ? NULL :
-	       "cannot hold a value of the field";
+		return "has codes and is of a field that is on or off";
+	ret->scale = 0;
+	wrong = read_codes(w, (uint32_t)fmin(exp2(ret->bits),
+					     PROCESS_VALUES_MAX), ret);
+	return wrong ? wrong : give_codes(ret, field);
 }
 
 const char *config_way_read(const char *text, int field,
@@ -251,7 +307,45 @@ const char *config_way_read(const char *text, int field,
 		return read_way_lines(&w, field, ret);
 	if (strcmp(w.word, "can") == 0)
 		return read_can(&w, field, ret);
-	return "begins with no word of auto, none, lines, can";
+	if (strcmp(w.word, "register") == 0 || strcmp(w.word, "input") == 0)
+		return read_register(&w, field, ret);
+	return "begins with no word of auto, none, lines, can, register";
+}
+
+/* Numbers only: to look a name up takes as long as it likes. */
+static bool is_address(const char *host)
+{
+	uint8_t at[sizeof(struct in6_addr)];
+
+	return inet_pton(strchr(host, ':') ? AF_INET6 : AF_INET, host, at) == 1;
+}
+
+const char *config_modbus_read(const char *text, struct config_modbus_at *ret)
+{
+	const char *port = strrchr(text, ':'), *host = text;
+	size_t n = port ? (size_t)(port - text) : 0;
+	double number_of;
+
+	*ret = (struct config_modbus_at) { .serial = *text == '/' };
+	if (ret->serial) {
+		snprintf(ret->host, sizeof(ret->host), "%s", text);
+		return strlen(text) < sizeof(ret->host) ? NULL : "is too long";
+	}
+	if (!port)
+		return "is no device and has no port";
+	if (*host == '[' && n > 1 && port[-1] == ']') {
+		host++;
+		n -= 2;
+	}
+	if (n == 0 || n >= sizeof(ret->host))
+		return "has no address";
+	snprintf(ret->host, sizeof(ret->host), "%.*s", (int)n, host);
+	snprintf(ret->port, sizeof(ret->port), "%s", port + 1);
+	if (!is_address(ret->host))
+		return "has no address in numbers";
+	return number(port + 1, &number_of) && is_whole(number_of, 1, 65535) &&
+	       strspn(port + 1, "0123456789") == strlen(port + 1) ? NULL :
+	       "has no port of 1 to 65535";
 }
 
 uint32_t config_hand_read(const char *text, char odd[CONFIG_WAY_WORD])

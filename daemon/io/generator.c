@@ -24,6 +24,17 @@ void generator_tell(struct generator *g, const struct generator_note *n)
 	atomic_store(&g->put, put + 1);
 }
 
+/* As the Modbus standard has them. */
+static const char *exception_words(int code)
+{
+	static const char *const words[] = {
+		"", ", no such function", ", no such register",
+		", no such value", ", its device failed",
+	};
+
+	return code > 0 && code < 5 ? words[code] : "";
+}
+
 static void put_text(const struct generator_note *n, char *buf, size_t size)
 {
 	const char *name = process_name(n->field);
@@ -44,6 +55,18 @@ static void put_text(const struct generator_note *n, char *buf, size_t size)
 		break;
 	case GENERATOR_LINES_LOST:
 		snprintf(buf, size, "generator: its lines do not answer");
+		break;
+	case GENERATOR_REFUSES:
+		snprintf(buf, size, "generator: it refuses %s: asked %g, "
+			 "answered exception %d%s", name, n->asked, n->code,
+			 exception_words(n->code));
+		break;
+	case GENERATOR_LINK_DOWN:
+		snprintf(buf, size, "generator: its Modbus link is down: %s",
+			 strerror(n->code));
+		break;
+	case GENERATOR_LINK_BACK:
+		snprintf(buf, size, "generator: its Modbus link is there");
 		break;
 	case GENERATOR_BUS_DOWN:
 		snprintf(buf, size, "generator: its CAN interface is down");
@@ -68,22 +91,42 @@ static bool generator_note(void *self, char *buf, size_t size)
 
 /* -- What it says ---------------------------------------------------------- */
 
-static void trouble(struct generator *g, enum generator_note_kind kind,
-		    int field)
+static void trouble(struct generator *g, const struct generator_note *n)
 {
+	struct generator_note full = *n;
+
 	if (g->says.trouble)
 		return;
 	g->says.trouble = true;
-	generator_tell(g, &(struct generator_note) {
-		.kind = kind, .field = field,
-		.asked = field < INTERP_NGENERATOR ? g->value[field] : 0,
-		.told = field < INTERP_NGENERATOR ? g->heard[field] : 0,
-	});
+	if (n->field < INTERP_NGENERATOR) {
+		full.asked = g->value[n->field];
+		full.told = g->heard[n->field];
+	}
+	generator_tell(g, &full);
+}
+
+static void trouble_of(struct generator *g, enum generator_note_kind kind,
+		       int field)
+{
+	trouble(g, &(struct generator_note) { .kind = kind, .field = field });
+}
+
+void generator_refused(struct generator *g, int field, int exception)
+{
+	trouble(g, &(struct generator_note) {
+		.kind = GENERATOR_REFUSES, .field = field, .code = exception });
 }
 
 static bool tells(const struct generator *g, int field)
 {
-	return g->told[field].kind == WAY_CAN;
+	return g->told[field].kind != WAY_NONE;
+}
+
+/* A slave that tells nothing still answers. */
+static bool answers(const struct generator *g, int field)
+{
+	return (field < INTERP_NGENERATOR && tells(g, field)) ||
+	       g->way[field].kind == WAY_REGISTER;
 }
 
 static bool agrees(const struct generator *g, int field)
@@ -95,11 +138,17 @@ static bool agrees(const struct generator *g, int field)
 	       fabs(g->heard[field] - g->value[field]) <= slack;
 }
 
-/* The first field that it tells otherwise; -1: there is none. */
+/* The first field that it tells otherwise, or that waits for its answer; -1:
+ * there is none. */
 static int odd_one(const struct generator *g)
 {
+	const bool waits = g->modbus && g->taken_version != g->asked;
+
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		if (!agrees(g, i))
+			return i;
+	for (int i = 0; i < PROCESS_NFIELDS && waits; i++)
+		if (g->way[i].kind == WAY_REGISTER)
 			return i;
 	return -1;
 }
@@ -108,16 +157,17 @@ static void look(struct generator *g)
 {
 	const int odd = odd_one(g);
 
-	for (int i = 0; i < INTERP_NGENERATOR; i++)
-		if (tells(g, i) && g->age[i] > g->silent)
-			trouble(g, GENERATOR_SILENT, i);
+	for (int i = 0; i < PROCESS_NFIELDS; i++)
+		if (answers(g, i) && g->age[i] > g->silent)
+			trouble_of(g, GENERATOR_SILENT, i);
 	if (odd < 0) {
 		g->says.in_force = g->asked;
 		g->waited = 0;
 	} else if (g->says.in_force == g->asked) {
-		trouble(g, GENERATOR_DIFFERS, odd);
+		trouble_of(g, GENERATOR_DIFFERS, odd);
+		g->says.in_force = g->asked - 1;
 	} else if (++g->waited > g->confirm) {
-		trouble(g, GENERATOR_LATE, odd);
+		trouble_of(g, GENERATOR_LATE, odd);
 	}
 }
 
@@ -129,6 +179,8 @@ static void generator_read(void *self, struct io_inputs *in)
 	g->ill = in->trouble != IO_WELL || in->lost;
 	if (g->fd >= 0)
 		generator_can_read(g);
+	if (g->modbus)
+		g->modbus_read(g);
 	look(g);
 	memcpy(g->says.told, g->heard, sizeof(g->says.told));
 	in->generator = g->says;
@@ -146,6 +198,27 @@ uint32_t generator_code(const struct config_way *w, double value)
 	return 0;
 }
 
+/* A negative electrode is on.  With all bits on it has its own setting. */
+uint64_t generator_count(const struct config_way *w, int field, double value)
+{
+	if (field == INTERP_TECH_POLARITY)
+		return value < 0;
+	if (w->ncodes)
+		return generator_code(w, value);
+	if (w->bits == 1)
+		return value > 0;
+	return isnan(value) ? UINT64_MAX : (uint64_t)(value / w->scale + 0.5);
+}
+
+double generator_value(const struct config_way *w, int field, uint64_t count)
+{
+	if (field == INTERP_TECH_POLARITY)
+		return count ? -1 : 1;
+	if (w->ncodes)
+		return count < w->ncodes ? w->code[count] : (double)NAN;
+	return (double)count * (w->bits == 1 ? 1 : w->scale);
+}
+
 static void take(struct generator *g, const struct io_outputs *out)
 {
 	if (out->asked != g->asked) {
@@ -155,8 +228,11 @@ static void take(struct generator *g, const struct io_outputs *out)
 	g->asked = out->asked;
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		g->value[i] = out->pulse[i];
-	if (out->reset)
+	g->anew = out->reset;
+	if (out->reset) {		/* what it has must be told again */
 		g->says.trouble = false;
+		g->says.in_force = g->asked - 1;
+	}
 	g->value[PROCESS_SENSE] = out->sense;
 	g->value[PROCESS_PUMP] = out->pump && !g->ill;
 	g->value[PROCESS_SPARK] = out->power && !g->ill && !g->says.trouble;
@@ -168,9 +244,11 @@ static void generator_write(void *self, const struct io_outputs *out)
 
 	take(g, out);
 	if (g->lines && !g->lines_write(g))
-		trouble(g, GENERATOR_LINES_LOST, PROCESS_NFIELDS);
+		trouble_of(g, GENERATOR_LINES_LOST, PROCESS_NFIELDS);
 	if (g->fd >= 0)
 		generator_can_write(g);
+	if (g->modbus)
+		g->modbus_write(g);
 	g->axes.write(g->axes.self, out);
 }
 
@@ -200,6 +278,10 @@ static void generator_close(void *self)
 	}
 	if (g->fd >= 0)
 		generator_can_write(g);
+	if (g->modbus) {
+		g->modbus_write(g);
+		g->modbus_end(g->modbus);
+	}
 	g->axes.close(g->axes.self);
 	generator_forget(g);
 }
@@ -226,6 +308,7 @@ struct generator *generator_attach(struct io_machine *m,
 	if (!g)
 		return NULL;
 	g->axes = *m;
+	g->says.in_force = g->asked - 1;
 	g->fd = fd;
 	g->refresh = periods(c, REFRESH_S);
 	g->silent = periods(c, c->generator.silent_ms * 1e-3);

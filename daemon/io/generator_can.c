@@ -34,25 +34,6 @@ static void bytes_put(uint8_t data[8], uint64_t x)
 	can_put(data + 4, (uint32_t)(x >> 32), 4);
 }
 
-/* A negative electrode is on.  With all bits on it has its own setting. */
-static uint64_t count_of(const struct config_way *w, int field, double value)
-{
-	if (field == INTERP_TECH_POLARITY)
-		return value < 0;
-	if (w->bits == 1)
-		return value > 0;
-	return isnan(value) ? UINT64_MAX : (uint64_t)(value / w->scale + 0.5);
-}
-
-static double value_of(const struct config_way *w, int field, uint64_t x)
-{
-	const uint64_t count = (x & mask_of(w)) >> w->bit;
-
-	if (field == INTERP_TECH_POLARITY)
-		return count ? -1 : 1;
-	return (double)count * (w->bits == 1 ? 1 : w->scale);
-}
-
 void generator_can_init(struct generator *g, const struct machine_config *c)
 {
 	for (int i = 0; i < PROCESS_NFIELDS; i++) {
@@ -83,7 +64,7 @@ static uint64_t content(const struct generator *g, uint16_t id)
 		const struct config_way *w = &g->way[i];
 
 		if (w->kind == WAY_CAN && w->id == id)
-			x |= count_of(w, i, g->value[i]) << w->bit &
+			x |= generator_count(w, i, g->value[i]) << w->bit &
 			     mask_of(w);
 	}
 	return x;
@@ -133,7 +114,8 @@ static void hear(struct generator *g, const struct can_msg *m)
 		if (w->kind != WAY_CAN || w->id != m->id ||
 		    w->bit + w->bits > 8 * m->len)
 			continue;
-		g->heard[i] = value_of(w, i, bytes_get(m->data));
+		g->heard[i] = generator_value(w, i, (bytes_get(m->data) &
+						     mask_of(w)) >> w->bit);
 		g->age[i] = 0;
 	}
 }

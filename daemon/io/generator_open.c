@@ -55,7 +55,8 @@ int io_generator_open(struct io_machine *m, const struct machine_config *c,
 	struct generator *g;
 	int fd = -1, err = 0;
 
-	if (interface != GENERATOR_LINES && interface != GENERATOR_CAN)
+	if (interface != GENERATOR_LINES && interface != GENERATOR_CAN &&
+	    interface != GENERATOR_MODBUS)
 		return 0;
 	if (bus)
 		fd = bus_open(c, diag);
@@ -66,6 +67,8 @@ int io_generator_open(struct io_machine *m, const struct machine_config *c,
 		return -ENOMEM;
 	if (has(g, WAY_LINES))
 		err = generator_lines_open(g, c, diag);
+	if (err == 0 && interface == GENERATOR_MODBUS)
+		err = generator_modbus_open(g, c, diag);
 	if (err < 0) {
 		if (g->lines)
 			g->lines_close(g->lines);

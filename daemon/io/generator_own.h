@@ -24,16 +24,20 @@ struct generator_frame {
 
 enum generator_note_kind {
 	GENERATOR_SILENT, GENERATOR_DIFFERS, GENERATOR_LATE,
-	GENERATOR_LINES_LOST, GENERATOR_BUS_DOWN, GENERATOR_BUS_BACK
+	GENERATOR_LINES_LOST, GENERATOR_BUS_DOWN, GENERATOR_BUS_BACK,
+	GENERATOR_REFUSES, GENERATOR_LINK_DOWN, GENERATOR_LINK_BACK
 };
 
 struct generator_note {
 	enum generator_note_kind kind;
 	int field;
 	double asked, told;
+	int code;			/* REFUSES: the exception; LINK:
+					 * errno */
 };
 
 struct generator_lines;
+struct generator_modbus;
 
 struct generator {
 	struct io_machine axes;		/* behind it */
@@ -50,11 +54,18 @@ struct generator {
 	uint32_t nframes;
 	bool down;
 	double heard[INTERP_NGENERATOR];	/* NAN: nothing yet */
-	uint32_t age[INTERP_NGENERATOR];	/* periods */
+	uint32_t age[PROCESS_NFIELDS];	/* periods */
 	/* Lines; NULL: none. */
 	struct generator_lines *lines;
 	bool (*lines_write)(struct generator *g);
 	void (*lines_close)(struct generator_lines *l);
+	/* Modbus; NULL: none. */
+	struct generator_modbus *modbus;
+	uint32_t taken_version;		/* that the slave has taken */
+	bool anew;			/* write what it has taken once more */
+	void (*modbus_write)(struct generator *g);
+	void (*modbus_read)(struct generator *g);
+	void (*modbus_end)(struct generator_modbus *m);
 	/* Written by read and write, taken by note. */
 	struct generator_note notes[GENERATOR_NOTES];
 	_Atomic uint32_t put, taken;
@@ -74,6 +85,15 @@ void generator_forget(struct generator *g);
 
 /** generator_code() - the code of the lines for @value; 0: none is on. */
 uint32_t generator_code(const struct config_way *w, double value);
+
+/** generator_count() - the bits for @value; NAN: all of them. */
+uint64_t generator_count(const struct config_way *w, int field, double value);
+
+/** generator_value() - the value of these bits. */
+double generator_value(const struct config_way *w, int field, uint64_t count);
+
+/** generator_refused() - it answered field @field with this exception. */
+void generator_refused(struct generator *g, int field, int exception);
 
 /** generator_tell() - what the log is to say next. */
 void generator_tell(struct generator *g, const struct generator_note *n);
@@ -95,5 +115,12 @@ void generator_can_read(struct generator *g);
  *  io_gpio_open(). */
 int generator_lines_open(struct generator *g, const struct machine_config *c,
 			 struct interp_diag *diag);
+
+/* -- generator_modbus.c ---------------------------------------------------- */
+
+/** generator_modbus_open() - start the thread that speaks with the slave, which
+ *  need not be there yet.  Return: as io_gpio_open(). */
+int generator_modbus_open(struct generator *g, const struct machine_config *c,
+			  struct interp_diag *diag);
 
 #endif /* IO_GENERATOR_OWN_H */

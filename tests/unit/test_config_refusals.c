@@ -11,6 +11,8 @@ struct refusal {
 	const char *found, *wanted;
 };
 
+#define MODBUS	"[machine]\nbackend = null\n[generator]\ninterface = modbus\n"
+
 static const struct refusal refusals[] = {
 	/* Names. */
 	{ "[gap]\nservo_volt = 15\n", 2, 1,
@@ -191,7 +193,7 @@ static const struct refusal refusals[] = {
 	  "has fewer weights than lines", "lines 20 21 26 weights 3 6 12" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
 	  "on_us = lines 20 21 codes 2 4 8 16 32\n", 5, 0,
-	  "has more codes than its lines make", "codes 2 4 8 16" },
+	  "has more codes than its lines or bits make", "codes 2 4 8 16" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
 	  "on_us = lines 20 21\n", 5, 0, "has neither weights nor codes", "" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
@@ -219,6 +221,49 @@ static const struct refusal refusals[] = {
 	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
 	  "peak_a = can 100 byte 7 bits 16\n", 5, 0,
 	  "goes beyond the eighth byte", "can ID byte N" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = can 100 byte 0\n", 6, 0,
+	  "is a frame, and the interface is not can", "register 10 scale" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
+	  "peak_a = register 10\n", 5, 0,
+	  "is a register, and the interface is not modbus", "can ID byte N" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 10 bits 10\n"
+	  "on_us = register 10 bit 9\n", 7, 0,
+	  "generator.on_us and generator.peak_a have bits of register 10",
+	  "a place of its own" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 65536\n", 6, 0,
+	  "has no address of 0 to 65535", "register N" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1 bit 9 bits 8\n", 6,
+	  0, "goes beyond the sixteenth bit", "" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1 scale 2000\n", 6, 0,
+	  "cannot hold a value of the field", "" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1 byte 0\n", 6, 0,
+	  "none of bit 0 to 15", "" },
+	{ MODBUS "modbus = /dev/ttyS0\non_us = register 1 bits 1 codes 2 4 8\n",
+	  6, 0, "has more codes than its lines or bits make", "" },
+	{ MODBUS "modbus = /dev/ttyS0\npolarity = register 1 bits 2\n", 6, 0,
+	  "is of a field that is on or off", "bit N" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = input 1\n", 6, 0,
+	  "is an input register, which nobody can write", "told_ also" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "spark = register 2 bit 0\n", 7, 0,
+	  "take a round trip: it must be a line", "lines 20 21" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "sense = register 2 bit 0\n", 7, 0, "take a round trip", "" },
+	{ MODBUS "peak_a = register 1\n", 0, 0,
+	  "generator.modbus \"none\" is no device", "/dev/ttyUSB0" },
+	{ MODBUS "modbus = generator:502\npeak_a = register 1\n", 5, 0,
+	  "has no address in numbers", "192.168.1.5:502" },
+	{ MODBUS "modbus = 10.0.0.1:0x2\npeak_a = register 1\n", 5, 0,
+	  "has no port of 1 to 65535", "[fd00::5]:502" },
+	{ MODBUS "modbus = /dev/ttyS0\nmodbus_unit = 0\npeak_a = register 1\n",
+	  6, 0, "generator.modbus_unit 0", "1 to 247" },
+	{ MODBUS "modbus = /dev/ttyS0\nsilent_ms = 149\npeak_a = register 1\n",
+	  6, 0, "generator.silent_ms 149", "at least 150" },
+	{ MODBUS "modbus = /dev/ttyS0\n", 4, 0, "no field has a register",
+	  "peak_a = register N" },
+	{ GAP_LINES "[generator]\ninterface = modbus\nmodbus = /dev/ttyS0\n"
+	  "peak_a = register 1\n", 0, 0, "generator.spark reaches nothing",
+	  "[gpio] spark" },
 	{ "[machine]\nbackend = null\n[generator]\nby_hand = on_us amps\n", 4,
 	  0, "generator.by_hand has \"amps\"", "peak_a on_us off_us" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"

@@ -291,14 +291,11 @@ static void what_is_asked_anew_is_judged_anew(void **state)
 
 /* -- What of a condition is delivered -------------------------------------- */
 
-#define GAP_LINES_TEXT	"[machine]\nbackend = gpio\nperiod_us = 200\n" \
-	"[axis.A]\npresent = no\n[axis.B]\npresent = no\n" \
-	"[axis.C]\npresent = no\n[axis.U]\npresent = no\n" \
-	"[axis.V]\npresent = no\n[axis.X]\nv_max_mm_s = 1\n" \
-	"[axis.Y]\nv_max_mm_s = 1\n[axis.Z]\nv_max_mm_s = 1\n" \
-	"[jump]\nv_max_mm_s = 1\n[gap]\nsource = lines\n[gpio]\n" \
-	"step_X = 1\ndir_X = 2\nstep_Y = 3\ndir_Y = 4\nstep_Z = 5\n" \
-	"dir_Z = 6\ngap_open = 7\ngap_short = 8\n"
+#define MODBUS	"spark = 9\nwatchdog_by = its own\nestop_by = its own\n" \
+	"[generator]\ninterface = modbus\nmodbus = /dev/ttyS0\n" \
+	"peak_a = register 1 bits 8 scale 0.1\n" \
+	"on_us = register 2 codes 2 4 8 16\noff_us = register 3\n" \
+	"ignition_v = register 4\npolarity = register 5 bit 3\n"
 
 /* Each field with its value; "": it is taken. */
 static const struct {
@@ -337,6 +334,14 @@ static const struct {
 	  INTERP_TECH_ON_US, 20, "on_us 20 us", "2 4 8 us" },
 	{ "[generator]\ninterface = lines\npolarity = line 20\n",
 	  INTERP_TECH_POLARITY, -1, "", "" },
+	{ MODBUS, INTERP_TECH_PEAK_A, 6, "", "" },
+	{ MODBUS, INTERP_TECH_PEAK_A, 26, "peak_a 26 A", "0.1 to 25.5 A" },
+	{ MODBUS, INTERP_TECH_ON_US, 8, "", "" },
+	{ MODBUS, INTERP_TECH_ON_US, 40, "on_us 40 us", "2 4 8 16 us" },
+	{ MODBUS, INTERP_TECH_OFF_US, 20, "", "" },
+	{ MODBUS, INTERP_TECH_IGNITION_V, 180, "", "" },
+	{ MODBUS, INTERP_TECH_POLARITY, -1, "", "" },
+	{ MODBUS, INTERP_TECH_ISO, 1, "iso 1", "[generator] iso" },
 };
 
 static void each_field_reaches_it_or_is_refused(void **state)
@@ -348,7 +353,7 @@ static void each_field_reaches_it_or_is_refused(void **state)
 		struct interp_tech t;
 		char text[1200];
 
-		snprintf(text, sizeof(text), "%s%s", GAP_LINES_TEXT,
+		snprintf(text, sizeof(text), "%s%s", GAP_LINES,
 			 cells[i].more);
 		assert_int_equal(read_text(text, &c, &d), 0);
 		interp_tech_clear(&t);
@@ -367,7 +372,7 @@ static void lines_have_the_code_of_the_value(void **state)
 	struct config_way w;
 
 	(void)state;
-	assert_int_equal(read_text(GAP_LINES_TEXT "[generator]\n"
+	assert_int_equal(read_text(GAP_LINES "[generator]\n"
 		"interface = lines\npeak_a = lines 20 !21 26 weights 3 6 12\n"
 		"on_us = lines 22 23 codes 2 4 8 16\n", &c, &d), 0);
 	config_way(&c, INTERP_TECH_PEAK_A, false, &w);

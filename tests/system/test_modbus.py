@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A generator on Modbus: the slave is pymodbus, over TCP and over a pty."""
+
+import json
+import subprocess
+
+import pytest
+import rig
+from modbus_slave import LAYOUT, Slave
+
+MACHINE = rig.NULL_MACHINE + """
+[tech]
+table = shop.tech
+
+[generator]
+interface = modbus
+modbus = {where}
+modbus_every_ms = 20
+silent_ms = 2000
+modbus_timeout_ms = 900
+confirm_s = 3
+""" + LAYOUT
+
+# The published one: 6 A, 8 us, 20 us, 180 V; and 15 V of servo voltage.
+TABLE = """
+condition, servo_v [V], peak_a [A], on_us [us], off_us [us], ignition_v [V]
+C200, 15, 6, 8, 20, 180
+C100, 15, 12, 20, 50, 120
+"""
+
+JOB = b"G21 G90\nC200 G1 X1 F60\nC100\nX2\nM30\n"
+LONG_JOB = b"G21 G90\nC200 G1 X40 F60\nM30\n"
+
+
+class Shop:
+    def __init__(self, m, slave):
+        self.m, self.slave, self.c = m, slave, m.client
+
+    def told(self):
+        o = json.loads(self.m.ctl("--json", "generator").stdout)
+        return o, {f["name"]: f for f in o["fields"]}
+
+    def until_in_force(self):
+        rig.until(lambda: self.told()[0]["in_force"], 10)
+        return self.told()[1]
+
+    def cut(self, text=LONG_JOB):
+        assert self.c.submit(text, "job").code == 0
+        self.c.status_where(lambda s: s.place_mm > 0.1)
+        self.until_in_force()
+
+    def logs(self, words):
+        """A machine without a gap has no sparks to end, and says it."""
+        rig.until(lambda: words in self.m.log("edmd"), 10)
+
+
+def make(tmp_path, slave, more=""):
+    text = (MACHINE + more).replace("{where}", slave.where)
+    return rig.Machine(tmp_path, text)
+
+
+@pytest.fixture(params=["tcp", "rtu"])
+def shop(request, tmp_path):
+    with Slave(pty=request.param == "rtu") as slave:
+        with make(tmp_path, slave) as m:
+            (tmp_path / "shop.tech").write_text(TABLE)
+            m.start()
+            yield Shop(m, slave)
+
+
+@pytest.fixture
+def tcp(tmp_path):
+    with Slave() as slave, make(tmp_path, slave) as m:
+        (tmp_path / "shop.tech").write_text(TABLE)
+        m.start()
+        yield Shop(m, slave)
+
+
+def test_a_condition_reaches_it_whole(shop):
+    shop.cut(JOB)
+    shop.c.job_where("job", "done")
+    written = [w for w in shop.slave.writes if w[2] == 10 and w[1] == 16]
+    assert [w[3][:4] for w in written][-2:] == [
+        [60, 80, 200, 180], [120, 200, 500, 120]]
+    told = shop.until_in_force()
+    assert told["peak_a"]["told"] == pytest.approx(12)
+    assert told["off_us"]["by"] == "register"
+    # Nothing is written that the slave has.
+    n, reads = len(shop.slave.writes), shop.slave.reads
+    rig.until(lambda: shop.slave.reads > reads + 5)
+    assert len(shop.slave.writes) == n
+
+
+def test_a_walk_goes_through_each_step_and_all_is_as_before(shop):
+    p = shop.m.ctl("generator", "walk", "--every", "9000", timeout=120)
+    assert p.returncode == 0, p.stdout + p.stderr
+    assert " 0 not told as asked; all is as it was before" in p.stdout
+    peaks = [w[3][0] for w in shop.slave.writes if w[2] == 10]
+    assert min(peaks) == 1 and max(peaks) >= 9000
+    assert {shop.slave.get(14) & 3} <= {0, 1, 2, 3}
+    assert all(f["asked"] is None for f in shop.told()[1].values())
+
+
+def test_a_walk_finds_what_is_told_otherwise(tcp):
+    tcp.slave.lies[11] = 7
+    p = tcp.m.ctl("generator", "walk", "--every", "40000", timeout=200)
+    assert p.returncode == 1, p.stdout + p.stderr
+    assert "on_us 0.1 us: asked 0.1, told 0.7" in p.stdout
+    assert "peak_a" not in [r.split()[0] for r in p.stdout.splitlines()
+                            if ": asked" in r]
+    assert all(f["asked"] is None for f in tcp.told()[1].values())
+
+
+def test_an_edmd_that_dies_in_a_walk_has_nothing_tried(tcp):
+    assert tcp.m.ctl("generator", "set", "peak_a", "6").returncode == 0
+    rig.until(lambda: tcp.slave.get(10) == 60)
+    tcp.m.kill("edmd")
+    tcp.m.start_edmd()
+    tcp.c.status_where(lambda s: s.daemon == "ok")
+    rig.until(lambda: tcp.told()[0]["there"])
+    assert tcp.told()[1]["peak_a"]["asked"] is None
+
+
+def test_one_that_lies_ends_the_sparks(shop):
+    shop.cut()
+    shop.slave.lies[10] = 75
+    shop.logs("peak_a was in force and is no more: asked 6, told 7.5")
+    rig.until(lambda: not shop.told()[0]["in_force"])
+
+
+def test_one_that_was_reset_has_all_again_with_what_is_asked_next(tcp):
+    tcp.cut(JOB)
+    tcp.until_in_force()
+    tcp.slave.reset()
+    tcp.logs("was in force and is no more: asked 6, told 0")
+    tcp.c.job_where("job", "done")
+    assert tcp.slave.get(10) == 120 and tcp.slave.get(13) == 120
+    assert tcp.until_in_force()["peak_a"]["told"] == pytest.approx(12)
+
+
+def test_one_that_refuses_a_value_is_told_by_its_field(shop):
+    shop.slave.refuses[12] = 3
+    assert shop.c.submit(LONG_JOB, "job").code == 0
+    shop.logs("it refuses off_us: asked 20, answered exception 3, no such "
+              "value")
+    rig.until(lambda: not shop.told()[0]["in_force"])
+
+
+def test_one_without_function_16_is_written_singly(tcp):
+    mangle = tcp.slave._pdu
+
+    def no_16(sending, pdu):
+        if sending and tcp.slave.asked.function_code == 16:
+            tcp.slave.refuses = {a: 1 for a in range(10, 15)}
+        else:
+            tcp.slave.refuses = {}
+        return mangle(sending, pdu)
+
+    tcp.slave.stop()
+    tcp.slave._pdu = no_16
+    tcp.slave.start()
+    tcp.cut()
+    assert tcp.slave.get(10) == 60 and tcp.slave.get(12) == 200
+    assert 6 in {w[1] for w in tcp.slave.writes}
+    assert tcp.until_in_force()["off_us"]["told"] == pytest.approx(20)
+
+
+def test_one_that_is_silent_is_a_fault(shop):
+    shop.cut()
+    shop.slave.silent = True
+    shop.logs("it does not tell its peak_a any more")
+    shop.logs("Modbus link is down")
+    shop.slave.silent = False
+    shop.logs("Modbus link is there")
+
+
+def test_one_that_comes_late_is_waited_for(tcp):
+    tcp.slave.late_s = 0.3
+    assert tcp.m.ctl("generator", "set", "peak_a", "6").returncode == 0
+    assert tcp.until_in_force()["peak_a"]["told"] == pytest.approx(6)
+
+
+def test_a_link_that_is_cut_comes_back(tcp):
+    tcp.cut()
+    tcp.slave.stop()
+    tcp.logs("it does not tell its peak_a any more")
+    tcp.slave.start()
+    tcp.logs("Modbus link is there")
+    assert tcp.until_in_force()["peak_a"]["told"] == pytest.approx(6)
+
+
+def of_another_unit(data):
+    return bytes([data[0] ^ 1]) + data[1:]
+
+
+def cut_and_lose(shop, mangle):
+    shop.cut()
+    shop.slave.mangle = mangle
+    shop.logs("it does not tell its peak_a any more")
+    shop.slave.mangle = None
+    shop.logs("Modbus link is there")
+    assert shop.until_in_force()["peak_a"]["told"] == pytest.approx(6)
+
+
+def test_half_an_answer_is_none(shop):
+    cut_and_lose(shop, lambda data: data[:len(data) // 2])
+
+
+@pytest.mark.parametrize("shop", ["rtu"], indirect=True)
+def test_an_answer_of_another_unit_is_none(shop):
+    cut_and_lose(shop, of_another_unit)
+
+
+def test_a_port_that_is_not_there_is_refused(tmp_path):
+    for where, words in (
+        ("/dev/ttyNONE7", "generator.modbus /dev/ttyNONE7: No such file"),
+        ("/dev/null", "/dev/null: is no serial port"),
+    ):
+        slave = Slave()
+        slave.where = where
+        with make(tmp_path, slave) as m:
+            (tmp_path / "shop.tech").write_text(TABLE)
+            p = subprocess.run([rig.BUILD / "edmd", "--config", m.config],
+                               capture_output=True, text=True, timeout=60)
+            assert p.returncode == 78, p.stderr
+            assert words in p.stderr
+            assert "192.168.1.5:502" in p.stderr
+
+
+def test_it_is_there_before_its_slave_is(tmp_path):
+    slave = Slave()
+    slave.port = 5020
+    slave.where = "127.0.0.1:5020"
+    with make(tmp_path, slave) as m:
+        (tmp_path / "shop.tech").write_text(TABLE)
+        m.start()
+        shop = Shop(m, slave)
+        assert shop.told()[1]["peak_a"]["told"] is None
+        slave.start()
+        try:
+            assert m.ctl("generator", "set", "on_us", "8").returncode == 0
+            assert shop.until_in_force()["on_us"]["told"] == pytest.approx(8)
+        finally:
+            slave.stop()
+
+
