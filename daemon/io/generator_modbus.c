@@ -39,11 +39,13 @@ struct wish {
 /* An exchange that was whole, or how one failed. */
 struct word {
 	uint32_t number;		/* of whole exchanges */
-	uint32_t version;		/* that the slave has taken; NONE */
+	uint32_t version, again;	/* that the slave has taken; NONE.  The
+					 * wish that it answers */
 	uint32_t refused;		/* version with a refusal, NONE */
 	uint16_t field, exception;	/* ... of it */
 	int32_t err;			/* no link: errno; 0: it is there */
 	uint16_t count[INTERP_NGENERATOR];
+	uint32_t pad;
 };
 
 struct wish_slot {
@@ -407,7 +409,7 @@ static void exchange(struct generator_modbus *m)
 		memset(m->bank.kept, 0, sizeof(m->bank.kept));
 	m->odd = m->odd && w.version == m->took && w.again == m->again;
 	m->took = w.version;
-	m->again = w.again;
+	m->again = m->word.again = w.again;
 	bank_take(m, &w);
 	modbus_flush(m->link);
 	err = write_due(m);
@@ -499,7 +501,9 @@ static void note_link(struct generator *g, const struct word *w)
 static void take_word(struct generator *g, const struct word *w)
 {
 	note_link(g, w);
-	if (w->refused == g->asked && w->refused != NONE)
+	/* Not one from before a reset. */
+	if (w->refused == g->asked && w->refused != NONE &&
+	    w->again == g->modbus->last.again)
 		generator_refused(g, w->field, w->exception);
 	if (w->number == g->modbus->heard)
 		return;

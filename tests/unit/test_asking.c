@@ -18,6 +18,9 @@ struct slow {
 	int most;			/* periods that it needs */
 	int dark;			/* periods without sparks */
 	uint64_t sparks, changes;
+	bool restless;			/* it loses its values, lies, falls
+					 * silent: and is seen to */
+	uint64_t troubles;
 };
 
 static void give_steps(struct process_delivers *d, double step, double max)
@@ -133,6 +136,27 @@ static void generate(struct rig *r, struct slow *g)
 	g->left -= g->left >= 0;
 }
 
+/* What an interface makes of it: trouble until a reset, and then what was in
+ * force must be told again. */
+static void fail_at_times(struct rig *r, struct slow *g)
+{
+	struct io_generator *says = &r->in.generator;
+
+	if (r->out.reset && says->trouble) {
+		says->trouble = false;
+		says->in_force = r->out.asked - 1;
+		memcpy(g->next, r->out.pulse, sizeof(g->next));
+		g->asked = r->out.asked;
+		g->left = (int)(rnd(&g->seed) % (uint64_t)(g->most + 1));
+	} else if (!says->trouble && rnd(&g->seed) % 500 == 0) {
+		says->trouble = true;
+		g->left = -1;
+		g->troubles++;
+		for (int i = 0; i < INTERP_NGENERATOR; i++)
+			g->now[i] = 999;
+	}
+}
+
 static struct slow slow_of(uint64_t seed, int most)
 {
 	struct slow g = { .seed = seed, .most = most, .left = -1 };
@@ -148,6 +172,8 @@ static void period(struct rig *r, struct slow *g, double gap_v)
 	step(r, asking_waits(&r->c) ? 0 : gap_v);
 	check_spark(r, g);
 	generate(r, g);
+	if (g->restless)
+		fail_at_times(r, g);
 }
 
 /* A gap that is mostly good, and an operator who holds and goes back. */
@@ -176,12 +202,14 @@ static void random_job(uint64_t seed, bool answers, int periods)
 	struct slow g = slow_of(seed, answers ? SLOW_MAX : SETTLE);
 	struct rig r;
 
+	g.restless = answers && rnd(&g.seed) % 2;
 	k.jump.height_mm = rnd(&g.seed) % 2 ? 0.4 : 0;
 	k.jump.every.cycles = 60;
 	rig_conds(&r, &k, 0.1 + 0.01 * (double)(rnd(&g.seed) % 20), 400);
 	for (int i = 0; i < periods && r.c.loaded; i++)
 		random_period(&r, &g);
 	assert_true(g.sparks > 0 && g.changes > 3);
+	assert_true(!g.restless || g.troubles > 0);
 	rig_free(&r);
 }
 
