@@ -424,7 +424,8 @@ bool shm_command_take(struct shm_commands *c, struct shm_command *ret);
  * words/stop_act.h.
  *
  * The group may connect.  It starts a thread that takes acts from the socket,
- * and answers them when @status has the answer.  Startup only.
+ * and answers them when @status has the answer.  The thread has SCHED_FIFO 1 if
+ * the host allows it.  Startup only.
  */
 int shm_stop_create(struct shm_stops **ret, const char *machine,
 		    const struct shm_status *status);

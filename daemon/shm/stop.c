@@ -5,7 +5,9 @@
  * They need no edmd-jobs, no key and no session, so nothing that keeps these
  * busy keeps a stop away.  Who may connect is who is in the group; the kernel
  * sees to that.  The thread waits for nobody: a client sends one act and gets
- * one answer, and one beyond takes the place of the oldest.
+ * one answer, and one beyond takes the place of the oldest.  It is before all
+ * programs that have no real-time priority, so neither busy processes nor a
+ * crowd that connects keep it waiting.
  *
  * The ids of acts go where those of commands go, and only so many of these are
  * remembered.  So not more than a few hundred acts are taken in a second; any
@@ -33,6 +35,7 @@
 #define GIVE_UP_NS	2000000000LL
 #define EACH_NS		10000000LL	/* an act; after the first ACTS */
 #define ACTS		16
+#define PRIORITY	1		/* SCHED_FIFO; below all that drives */
 
 CK_RING_PROTOTYPE(stop, shm_command)
 
@@ -166,11 +169,21 @@ static int look_out(struct shm_stops *s, struct pollfd p[ENDS + 2],
 	return ms;
 }
 
+/* Without the right to it the thread waits as others do; daemon/setup tells that
+ * there is no such right. */
+static void go_before_others(void)
+{
+	const struct sched_param p = { .sched_priority = PRIORITY };
+
+	pthread_setschedparam(pthread_self(), SCHED_FIFO, &p);
+}
+
 static void *stops_run(void *arg)
 {
 	struct shm_stops *s = arg;
 	struct pollfd p[ENDS + 2];
 
+	go_before_others();
 	for (;;) {
 		bool paid = is_paid(s, clock_ns(CLOCK_MONOTONIC));
 		int64_t now_ns;

@@ -159,8 +159,10 @@ VIRTUAL = {
     "quadrature.ini": machine(period_us=100, v=5,
                               tail=LINES + "signal = quadrature\n"),
     "line.ini": machine(period_us=100, v=5),
+    "stop.ini": machine(period_us=1000, tail=GAP),
     "pulses.ngc": PULSES_JOB,
     "line.ngc": LINE_JOB,
+    "stop.ngc": SLOW_JOB,
 }
 
 

@@ -39,7 +39,8 @@ def plain():
 @pytest.fixture(scope="session")
 def virtual():
     """One CPU in virtual time."""
-    return checked(Run("virtual", VIRTUAL, "-d"))
+    return checked(Run("virtual", VIRTUAL, "-d",
+                       copies=(compiled("stop-latency"),)))
 
 
 @pytest.fixture(scope="session")
@@ -66,7 +67,7 @@ def made(command):
 def compiled(name):
     """A program of this folder, for the guest."""
     to = BUILD_VM / name
-    subprocess.run(["cc", "-O1", "-o", to, HERE / f"{name}.c"], check=True)
+    subprocess.run(["cc", "-D_GNU_SOURCE", "-O1", f"-I{ROOT}/daemon/words", "-o", to, HERE / f"{name}.c"], check=True)
     return to
 
 

@@ -140,6 +140,22 @@ def test_no_edge_is_late_or_missing_in_100000_periods(virtual):
     assert "0 overruns" in virtual.text("line.status")
 
 
+@pytest.mark.parametrize("load", ["nothing", "busy", "crowd", "jobs"])
+def test_from_a_stop_to_sparks_off_are_five_periods_at_most(virtual, load):
+    """Behind edmd's own socket: beside eight busy processes, clients that
+    connect and say nothing, and an edmd-jobs that stands."""
+    acts = [r.split() for r in virtual.text("stops").splitlines()]
+    assert all(len(a) == 4 and a[3] == "0" for a in acts), acts
+    falls = [float(r[0]) for r in map(str.split, virtual.text(
+        "stop.trace").splitlines()) if r[1] == "0" and r[2] == "0"]
+    took = [min(t for t in falls if t > float(sent)) - float(sent)
+            for name, sent, _, _ in acts if name == load]
+    in_periods = [1e3 * t for t in took]
+    print(load, "in periods:", *(f"{t:.1f}" for t in in_periods))
+    assert len(in_periods) == 8
+    assert max(in_periods) <= 5
+
+
 def cyclictest(virtual):
     text = virtual.text("cyclictest.txt")
     found = {k: int(re.search(rf"# {k} Latencies: *(\d+)", text)[1])
