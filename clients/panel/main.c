@@ -164,10 +164,12 @@ static int open_parts(struct panel *p)
 	p->children = children_create();
 	if (!p->shares || !p->sessions || !p->children ||
 	    live_create(&p->live, c) < 0)
-		return fail(EX_OSERR, "out of memory", "some MB");
+		return fail(EX_OSERR, "out of memory",
+			    "end another program, then start it again");
 	p->service = service_create(c->name, p->shares);
 	if (!p->service)
-		return fail(EX_OSERR, "out of memory", "some MB");
+		return fail(EX_OSERR, "out of memory",
+			    "end another program, then start it again");
 	service_on_event(p->service, on_event, p);
 	if (open_server(p) == 0)
 		return 0;

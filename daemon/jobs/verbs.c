@@ -86,10 +86,10 @@ static const char *refusal(int code)
 				  "that is held must be stopped for it",
 		[SHM_AT_LIMIT] = "an axis is on its limit switch; jog it away "
 				 "from the switch",
-		[SHM_BEYOND] = "that is outside the axis's travel; a shorter "
-			       "way",
-		[SHM_NO_NODE] = "the path has not so many nodes that way; "
-				"fewer",
+		[SHM_BEYOND] = "that is outside the axis's travel; ask for a "
+			       "shorter way",
+		[SHM_NO_NODE] = "the path has fewer nodes in that direction; "
+				"ask for fewer",
 		[SHM_NOT_PASSED] = "the path up to that node was not passed "
 				   "yet; start cuts on",
 		[SHM_ELSEWHERE] = "the axes are not where the program begins; "
@@ -122,8 +122,9 @@ static const char *gone(int code)
 		return "edmd took it and does not answer; status shows what "
 		       "comes of it";
 	case SHM_CUT_SHORT:
-		return "edmd ended over it: it was begun or not, but will not "
-		       "be done again; status shows where the machine stands";
+		return "edmd ended before it answered: nobody knows whether it "
+		       "was begun; it will not be done again; status shows "
+		       "where the machine stands";
 	case -ENOTCONN:
 		return "edmd went away before it took it; it is not done, and "
 		       "will not be";

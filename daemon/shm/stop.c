@@ -169,8 +169,8 @@ static int look_out(struct shm_stops *s, struct pollfd p[ENDS + 2],
 	return ms;
 }
 
-/* Without the right to it the thread waits as others do; daemon/setup tells that
- * there is no such right. */
+/* Without the right to it the thread waits as others do.  daemon/setup tells
+ * that there is no such right. */
 static void go_before_others(void)
 {
 	const struct sched_param p = { .sched_priority = PRIORITY };

@@ -42,10 +42,10 @@ static bool takes(const struct nc_reader *r, const struct nc_pattern_word *w,
 }
 
 /*
- * The number of the line before mostly had as many digits, and its point at the
- * same place.  Less its form, its bytes are the digits, and a 0 for the point;
- * with `top` added, none of them comes to 0x80, and any other byte does.  What
- * ends the number is compared as the text behind it.
+ * A number often has as many digits as the same word had in the line before,
+ * and its point at the same place.  Then each byte of `w ^ text` is the value
+ * of a digit, and 0 for the point.  `+ top` sets bit 7 of each byte that is
+ * neither.  The character behind the number is compared with what follows.
  *
  * Return: the place behind the number, or NULL.
  */

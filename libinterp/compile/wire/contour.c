@@ -78,8 +78,9 @@ static inline bool is_idle(const struct contour *k)
 static int refuse_record(const struct contour *k, struct interp_diag *diag)
 {
 	diag->line = k->n ? k->m[k->n - 1].word.line : 0;
-	return interp_diag_say(diag, "more than motions in a contour of G151; "
-			       "only motions, offset and taper");
+	return interp_diag_say(diag, "a contour of G151 has motions, offset "
+			       "and taper alone; put other words in front of "
+			       "or behind it");
 }
 
 int contour_flush(struct contour *k, struct interp_diag *diag)

@@ -40,9 +40,9 @@ T(ISO, "iso", "", 0, 1, true, \
 T(SERVO_V, "servo_v", "V", 0.1, 500, false, \
   "mean gap voltage to hold") \
 T(WINDOW_LOW_V, "window_low_v", "V", 0, 500, false, \
-  "the servo stands from here ...") \
+  "lower end of the window in which the servo stands") \
 T(WINDOW_HIGH_V, "window_high_v", "V", 0, 500, false, \
-  "... to here") \
+  "upper end of the window in which the servo stands") \
 T(SHORT_V, "short_v", "V", 0, 500, false, \
   "below: a short circuit") \
 T(OPEN_V, "open_v", "V", 0.1, 500, false, \
