@@ -5,7 +5,7 @@
  *	stop-latency SOCKET [crowd]
  *
  * Prints when it connected to send an act, when its answer was there, on
- * CLOCK_MONOTONIC, in s, and the answer's code.  It has a real-time priority, so
+ * CLOCK_MONOTONIC, in s, and the answer's code.  It has a real-time priority:
  * what it times is behind the socket.  As a crowd it connects again and again,
  * says nothing, and ends by a signal.
  */

@@ -30,7 +30,8 @@ struct length_eta {
 };
 
 /**
- * length_eta_measure() - divide @p into its parts. Return: 0; or -ENOMEM, and then it
+ * length_eta_measure() - divide @p into its parts. Return: 0; or -ENOMEM, and
+ * then it
  * has none.
  */
 int length_eta_measure(struct length_eta *l, const struct interp_program *p);
