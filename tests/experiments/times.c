@@ -265,8 +265,8 @@ int main(int argc, char **argv)
 	}
 	for (int i = 0; i < 2; i++)
 		if (sum[i].all > 0)
-			printf("%sWithin 20 %% of the truth, %s: %.1f %% of the "
-			       "samples by way, %.1f %% by time.\n", i ? "" :
+			printf("%sWithin 20 %% of the truth, %s: %.1f %% of "
+			       "the samples by way, %.1f %% by time.\n", i ? "" :
 			       "\n", i ? "jobs held out" : "the first eight "
 			       "jobs", sum[i].way / sum[i].all,
 			       sum[i].time / sum[i].all);

@@ -31,8 +31,7 @@ struct length_eta {
 
 /**
  * length_eta_measure() - divide @p into its parts. Return: 0; or -ENOMEM, and
- * then it
- * has none.
+ * then it has none.
  */
 int length_eta_measure(struct length_eta *l, const struct interp_program *p);
 
