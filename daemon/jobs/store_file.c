@@ -6,6 +6,7 @@
  * row.  A new file goes through all steps.  So it has the same columns in the
  * same order as a file that the first edmd-jobs made.
  */
+#include "store_log.h"
 #include "store_sql.h"
 #include "store_text.h"
 
@@ -307,14 +308,20 @@ static int open_once(struct store *s, sqlite3 **ret)
 		"PRAGMA journal_mode=WAL;"
 		"PRAGMA synchronous=FULL;"
 		"PRAGMA journal_size_limit=4194304;";
+	struct store_log log;
 	sqlite3 *db = NULL;
-	int err, rc = sqlite3_open(s->path, &db);
+	int err, rc;
 
+	store_log_look(&log, s->path);
+	rc = sqlite3_open(s->path, &db);
 	err = rc == SQLITE_OK ? 0 : store_file_errno(db, rc);
 	if (err == 0) {
 		sqlite3_busy_timeout(db, STORE_BUSY_MS);
-		err = execute(db, set);
+		if (!s->in_memory)
+			err = store_log_check(&log, db);
 	}
+	if (err == 0)
+		err = execute(db, set);
 	/* This is not done each time that there may be room again. */
 	if (err == 0 && (!s->in_memory || s->err == -EILSEQ))
 		err = check(s, db);

@@ -1134,6 +1134,83 @@ static void a_database_that_is_gone_is_told(void **state)
 	}
 }
 
+/* As a kill leaves it: what was written last is in the log alone. */
+static void leave_as_killed(void)
+{
+	struct store *s;
+	uint32_t n;
+
+	in_dir("rm -rf %s/*");
+	s = open_store();
+	for (int i = 0; i < 20; i++) {
+		char id[16];
+
+		snprintf(id, sizeof(id), "job-%d", i);
+		assert_int_equal(add(s, id, &n), 0);
+	}
+	in_dir("mkdir %s/k; cp %s/m.db* %s/k");
+	store_close(s);
+	in_dir("mv %s/k/m.db* %s");
+}
+
+static void a_log_that_lost_its_end_is_told(void **state)
+{
+	static const char *const damage[] = {
+		"rm %s/m.db-wal", ": > %s/m.db-wal",
+		"truncate -s 5000 %s/m.db-wal",
+		"truncate -s -1 %s/m.db-wal",
+		"head -c 90000 /dev/urandom > %s/m.db-wal",
+		"printf x | dd of=%s/m.db-wal bs=1 seek=17 conv=notrunc "
+		"2>/dev/null",
+		"printf xyzzy | dd of=%s/m.db-wal bs=1 seek=9000 conv=notrunc "
+		"2>/dev/null",
+		"dd if=/dev/zero of=%s/m.db-wal bs=4096 seek=2 count=1 "
+		"conv=notrunc 2>/dev/null",
+	};
+	struct store *s;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(damage) / sizeof(damage[0]); i++) {
+		leave_as_killed();
+		in_dir(damage[i]);
+		s = open_store();
+		assert_non_null(strstr(store_mended(s), "damaged"));
+		assert_int_equal(store_number(s, "waiting", 0), 1);
+		store_close(s);
+		in_dir("ls %s/m.db.damaged-* > /dev/null");
+		s = open_store();
+		assert_string_equal(store_mended(s), "");
+		store_close(s);
+	}
+}
+
+/* The index may be older than the log, or gone; the log may end in what was
+ * being written when the power went. */
+static void a_log_that_is_whole_is_no_loss(void **state)
+{
+	static const char *const odd[] = {
+		":", "rm %s/m.db-shm", ": > %s/m.db-shm",
+		"head -c 32768 /dev/urandom > %s/m.db-shm",
+		"head -c 3000 /dev/urandom >> %s/m.db-wal",
+		/* Of a log before this one. */
+		"printf qqqqqqqq | dd of=%s/m.db-shm bs=1 seek=32 conv=notrunc "
+		"2>/dev/null; printf qqqqqqqq | dd of=%s/m.db-shm bs=1 seek=80 "
+		"conv=notrunc 2>/dev/null",
+	};
+	struct store_job job;
+	struct store *s;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(odd) / sizeof(odd[0]); i++) {
+		leave_as_killed();
+		in_dir(odd[i]);
+		s = open_store();
+		assert_string_equal(store_mended(s), "");
+		assert_int_equal(store_find(s, "job-19", &job), 0);
+		store_close(s);
+	}
+}
+
 static void a_new_folder_is_no_loss(void **state)
 {
 	struct store *s;
@@ -1507,6 +1584,8 @@ int main(void)
 		T(a_job_costs_the_same_beside_ten_times_as_many),
 		T(a_damaged_page_costs_what_is_in_it),
 		T(a_database_that_is_gone_is_told),
+		T(a_log_that_lost_its_end_is_told),
+		T(a_log_that_is_whole_is_no_loss),
 		T(a_new_folder_is_no_loss),
 		T(links_and_fifos_are_not_opened),
 		T(what_is_no_database_is_set_aside),
