@@ -37,8 +37,8 @@ struct browser {
 	struct lws *wsi;
 	char session[SESSION_ID_BYTES];
 	uint64_t heard;			/* number of the message; 0: none */
-	bool closing;			/* number that the browser has
-					 * confirmed */
+	bool closing;			/* it said so: it is told, and may say,
+					 * nothing more */
 	struct answer *first, **last;
 	size_t waiting;
 	char *in;			/* a request that comes in pieces */
@@ -456,7 +456,7 @@ int socket_callback(struct lws *wsi, enum lws_callback_reasons reason,
 			return 0;
 		return b->panel ? on_writable(b) : -1;
 	case LWS_CALLBACK_RECEIVE:
-		return b->panel ? on_receive(b, in, len) : -1;
+		return b->panel && !b->closing ? on_receive(b, in, len) : -1;
 	default:
 		return 0;
 	}

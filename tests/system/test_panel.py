@@ -386,6 +386,25 @@ def test_frames_that_make_no_sense_end_the_connection_alone(p, me):
         assert other.state["fault"] == "none"
 
 
+def test_a_frame_behind_a_close_does_nothing(p, me):
+    """Sent together: the page has said that it is gone."""
+    with me.live() as other:
+        for close in (b"\x88\x80", b"\x88\x82"):
+            with me.raw_live() as s:
+                text = b"" if close[1] == 0x80 else b"\x03\xe8"
+                s.sendall(close + bytes(4) + text + me.frame(1, "estop"))
+                s.settimeout(20)
+                try:
+                    while s.recv(65536):
+                        pass
+                except ConnectionError:
+                    pass
+        assert other.ask("queue")["code"] == 0  # behind whatever was asked
+        n = other.told
+        other.where(lambda s: other.told > n + 2)
+        assert other.state["fault"] == "none"
+
+
 def test_random_bytes_on_a_web_socket_end_it_alone(p, me):
     for _ in range(20):
         with me.raw_live() as s:
