@@ -144,3 +144,26 @@ int ctl_home(struct ctl *c)
 		.verb = "home", .text = c->arg,
 	});
 }
+
+int ctl_place(struct ctl *c)
+{
+	const bool is = strcmp(c->value, "is") == 0;
+	double mm = 0;
+	char text[32];
+	int err = 0;
+
+	if (!is && strcmp(c->value, "as-seen") != 0) {
+		fprintf(stderr, "edmctl: place %s %s: as-seen, or is and a "
+			"number\n", c->arg, c->value);
+		return EX_USAGE;
+	}
+	if (is)
+		err = ctl_number(c, c->third ? c->third : "",
+				 "mm, or degrees of A B C", &mm);
+	if (err)
+		return err;
+	snprintf(text, sizeof(text), "%.8s %s", c->arg, c->value);
+	return ctl_say(c, &(struct talk_question) {
+		.verb = "place", .text = text, .arg = mm,
+	});
+}

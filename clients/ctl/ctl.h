@@ -70,6 +70,7 @@ int ctl_override(struct ctl *c);
 int ctl_jog(struct ctl *c);
 int ctl_jog_on(struct ctl *c);
 int ctl_home(struct ctl *c);
+int ctl_place(struct ctl *c);
 int ctl_alarms(struct ctl *c);
 int ctl_faults(struct ctl *c);
 int ctl_doctor(struct ctl *c);

@@ -93,6 +93,8 @@ static const struct verb verbs[] = {
 	  "while idle: move one axis at this speed, until Ctrl-C" },
 	{ "home", "[AXIS]", ctl_home, 1, 0, false, "wait",
 	  "while idle: home one axis, or all" },
+	{ "place", "AXIS as-seen|is MM", ctl_place, 3, 2, false, "",
+	  "while idle: say where an axis stands that nothing homes" },
 	{ "override", "PERCENT", ctl_override, 1, 1, false, "",
 	  "set the speed of positioning, in percent" },
 	{ "set", "KEY VALUE", ctl_set, 2, 2, false, "",

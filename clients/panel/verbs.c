@@ -401,6 +401,7 @@ static const struct verb verbs[] = {
 	  SERVICE_ONCE | NUMBER },
 	{ "press",    ROLE_OPERATOR, run_press, NULL, VERBS_ASK, NUMBER },
 	{ "home",     ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, 0 },
+	{ "place",    ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
 	{ "override", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
 	{ "estop",    ROLE_OPERATOR, run_ask, NULL, VERBS_END, 0 },
 	{ "reset",    ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, 0 },

@@ -110,7 +110,7 @@ static enum cycle_answer pass_on(struct loop *l, const struct shm_command *c)
 		return ANSWER_BAD_ARGUMENT;
 	/* A program that is being opened begins where the axes stand now. */
 	if ((c->verb == CYCLE_JOG || c->verb == CYCLE_HOME ||
-	     c->verb == CYCLE_JOG_ON) && l->opening)
+	     c->verb == CYCLE_JOG_ON || c->verb == CYCLE_PLACE) && l->opening)
 		return ANSWER_WRONG_STATE;
 	answer = cycle_command(&l->cycle, &m);
 	if (answer == ANSWER_DONE && verb_moves(c->verb))

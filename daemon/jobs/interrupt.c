@@ -92,6 +92,72 @@ void interrupt_answered(struct jobs *j)
 	set_unseen(j, 0);
 }
 
+/*
+ * What was seen last of an axis that nothing measures is kept as the way from
+ * where it is shown, so that it is still right when the axis was jogged.
+ */
+#define NOT_SEEN	INT64_MIN
+
+static const char *way_key(int axis)
+{
+	static char key[] = "seen-nm X";
+
+	key[sizeof(key) - 2] = INTERP_AXIS_LETTERS[axis];
+	return key;
+}
+
+static double shown_mm(const struct shm_snapshot *s, int axis)
+{
+	return s->pos[axis] * s->pulse_mm[axis];
+}
+
+/* The places of this edmd are not those of the one before; @was NULL: nobody
+ * knows what that showed. */
+static void keep_seen(struct jobs *j, const struct shm_snapshot *was)
+{
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const bool doubt = j->unseen >> i & 1;
+		int64_t way = doubt ? store_number(j->store, way_key(i), 0) : 0;
+
+		if (!(unhomeable(j) >> i & 1))
+			continue;
+		if (!was)
+			way = NOT_SEEN;
+		else if (way != NOT_SEEN)
+			way += llround((shown_mm(was, i) -
+					shown_mm(&j->link.snap, i)) * 1e6);
+		store_set_number(j->store, way_key(i), way);
+	}
+}
+
+const char *interrupt_as_seen(struct jobs *j, int axis, double *ret_mm)
+{
+	const bool in_doubt = (j->unseen | (*j->interrupted ? unhomeable(j) :
+						       0)) >> axis & 1;
+	const int64_t way = store_number(j->store, way_key(axis), 0);
+	struct shm_snapshot s;
+
+	if (!in_doubt)
+		return "this axis is shown where it was seen last; place AXIS "
+		       "is MM says another place";
+	if (way == NOT_SEEN)
+		return "nobody knows where it was seen last; look, and place "
+		       "AXIS is MM";
+	if (!j->link.status || !shm_snapshot(j->link.status, &s))
+		return "edmd is not there";
+	*ret_mm = shown_mm(&s, axis) + 1e-6 * (double)way;
+	return NULL;
+}
+
+void interrupt_placed(struct jobs *j, int axis, double mm)
+{
+	jobs_note(j, &(struct jobs_note) { .kind = "placed" },
+		  "%c was shown at %.3f; somebody says that it stands at %.3f",
+		  INTERP_AXIS_LETTERS[axis], shown_mm(&j->link.snap, axis), mm);
+	store_set_number(j->store, way_key(axis), 0);
+	set_unseen(j, j->unseen & ~(1u << axis));
+}
+
 const char *interrupt_unseen(const struct jobs *j)
 {
 	if (j->unseen & STORE_UNSEEN)
@@ -99,7 +165,9 @@ const char *interrupt_unseen(const struct jobs *j)
 		       "work offsets, electrodes and queue, then edmctl start";
 	return j->unseen ? "an axis that cannot be homed was last seen at "
 	       "another place than is shown; edmctl status names it; see where "
-	       "it stands, then edmctl start" : NULL;
+	       "it stands: edmctl place AXIS as-seen if it was not moved, or "
+	       "place AXIS is MM, or edmctl start if what is shown is right" :
+	       NULL;
 }
 
 /* Did this edmd take up the places of the one before?  After a power cut the
@@ -122,7 +190,10 @@ void interrupt_attach(struct jobs *j)
 	uint32_t axes = 0;
 	size_t n = 0;
 
-	if (goes_on(j, was) || !j->last.there)
+	if (goes_on(j, was))
+		return;
+	keep_seen(j, j->last.there ? was : NULL);
+	if (!j->last.there)
 		return;
 	for (uint32_t i = 0; i < INTERP_NAXES; i++) {
 		const double then_mm = was->pos[i] * was->pulse_mm[i];

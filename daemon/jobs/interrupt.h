@@ -55,4 +55,15 @@ void interrupt_answered(struct jobs *j);
 /** interrupt_lost() - the letters of the axes whose places are not certain. */
 const char *interrupt_lost(const struct jobs *j);
 
+/**
+ * interrupt_as_seen() - where @axis, which nothing homes, stands if it was not
+ * moved since it was seen last.
+ *
+ * Return: NULL and @ret_mm; or why nobody knows.
+ */
+const char *interrupt_as_seen(struct jobs *j, int axis, double *ret_mm);
+
+/** interrupt_placed() - edmd shows @axis at @mm from now on. */
+void interrupt_placed(struct jobs *j, int axis, double mm);
+
 #endif /* JOBS_INTERRUPT_H */

@@ -3,8 +3,8 @@
  * store_learnt.h - what jobs took to cut, of what was forecast
  *
  * There is a row for each condition, material of the electrode, and material of
- * the work, as far as these are known.  Each job counts by its time, and half as
- * much after each later one.
+ * the work, as far as these are known.  Each job counts by its time, and half
+ * as much after each later one.
  *
  * Threads: one, that of the event loop.
  */

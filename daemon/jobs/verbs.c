@@ -38,6 +38,8 @@ struct asked {
 	struct jobs *jobs;
 	struct asker by;
 	const struct verb *verb;
+	uint32_t arg;			/* what edmd was asked for */
+	double arg_mm;
 };
 
 int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
@@ -87,7 +89,7 @@ static const char *refusal(int code)
 		[SHM_AT_LIMIT] = "an axis is on its limit switch; jog it away "
 				 "from the switch",
 		[SHM_BEYOND] = "that is outside the axis's travel; ask for a "
-			       "shorter way",
+			       "shorter way, or for a place within it",
 		[SHM_NO_NODE] = "the path has fewer nodes in that direction; "
 				"ask for fewer",
 		[SHM_NOT_PASSED] = "the path up to that node was not passed "
@@ -178,6 +180,8 @@ static void on_answer(void *arg, int code)
 		begun_keep(j, &a->by);
 	if (code == SHM_DONE && a->verb->machine == SHM_DO_CONFIRM)
 		asks_confirmed(j);
+	if (code == SHM_DONE && a->verb->machine == SHM_DO_PLACE)
+		interrupt_placed(j, (int)a->arg, a->arg_mm);
 	if (code == SHM_DONE)
 		verbs_answer(j, &c, 0, begun_is(a->verb) ? "begun" : "done");
 	else if (gone(code))
@@ -293,6 +297,8 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 
 	if (!a)
 		return;
+	a->arg = arg;
+	a->arg_mm = c->arg;
 	if (!may_start(j, v)) {
 		free(a);
 		snprintf(reason, sizeof(reason), "the store is degraded: %s; a "
@@ -547,6 +553,33 @@ static void verb_home(struct jobs *j, const struct verb *v,
 		       "it starts at is good");
 }
 
+/* The text is the axis, and `is` or `as-seen`. */
+static void verb_place(struct jobs *j, const struct verb *v,
+		       const struct jobs_lcm_command *c)
+{
+	const size_t n = strcspn(c->text, " ");
+	const bool seen = strcmp(c->text + n, " as-seen") == 0;
+	struct jobs_lcm_command at = *c;
+	const int axis = axis_of(j, c, n);
+	const char *why;
+
+	if (axis < 0)
+		return;
+	if (!seen && (strcmp(c->text + n, " is") != 0 || !isfinite(c->arg))) {
+		verbs_answer(j, c, EX_DATAERR, "AXIS as-seen, or AXIS is and a "
+			     "number of mm or degrees");
+		return;
+	}
+	why = j->config->manual[axis].method ?
+	      "something homes this axis; edmctl home" :
+	      seen ? interrupt_as_seen(j, axis, &at.arg) : NULL;
+	if (why) {
+		verbs_answer(j, c, REFUSED, why);
+		return;
+	}
+	ask_machine(j, v, &at, (uint32_t)axis);
+}
+
 /* A refused start must not start the queue. */
 static bool refused_by_fault(struct jobs *j, const struct jobs_lcm_command *c)
 {
@@ -676,6 +709,8 @@ static const struct verb verbs[] = {
 	  "it idle, no job, no fault; and a press that is not over: press "
 	  "again" },
 	{ "home", ROLE_OPERATOR, VERB_ACTS, verb_home, SHM_DO_HOME,
+	  "it idle: no job loaded, no fault" },
+	{ "place", ROLE_OPERATOR, VERB_ACTS, verb_place, SHM_DO_PLACE,
 	  "it idle: no job loaded, no fault" },
 	{ "override", ROLE_OPERATOR, VERB_ACTS, verb_override,
 	  SHM_DO_OVERRIDE, "nothing" },

@@ -276,6 +276,8 @@ enum cycle_answer cycle_command(struct cycle *c, const struct cycle_command *m)
 		return do_set(c, m);
 	if (m->verb == CYCLE_TRY)
 		return do_try(c, m);
+	if (m->verb == CYCLE_PLACE)
+		return (enum cycle_answer)manual_place(c, m->arg, m->arg_mm);
 	if (m->verb == CYCLE_JOG || m->verb == CYCLE_HOME)
 		return do_manual(c, m);
 	return verbs[m->verb](c, m->arg_mm);

@@ -25,7 +25,7 @@
 struct forecast_part {
 	double to_mm;			/* it ends there, and the next begins */
 	double cut_s, other_s;
-	uint32_t cond;			/* in which it is cut: program's index */
+	uint32_t cond;			/* in which it is cut: its index */
 };
 
 /* All 0: there is none.  Read, do not write. */

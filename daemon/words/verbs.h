@@ -27,7 +27,9 @@
 	V(JOG_ON)	/* axis at arg_mm mm/s while this is repeated */ \
 	V(CONFIRM)	/* what a stand asks for is done; arg_mm: its number */ \
 	V(TRY)		/* idle: ask the generator for field arg as arg_mm; \
-			 * NAN: no more; arg beyond the last: all of them */
+			 * NAN: no more; arg beyond the last: all of them */ \
+	V(PLACE)	/* idle: axis arg, which nothing homes, stands at \
+			 * arg_mm */
 
 /*
  * The argument of JOG_ON.  Only a sign that says so begins a motion.  A press

@@ -349,6 +349,44 @@ static void a_program_from_elsewhere_is_refused(void **state)
 	unmake(&m);
 }
 
+/* Nothing moves, and the axis counts on from there. */
+static void a_person_says_where_an_axis_stands(void **state)
+{
+	struct bench b;
+	struct cycle_config k = manual_config();
+	int32_t drive;
+
+	(void)state;
+	k.axis[INTERP_X].method = HOME_SWITCH;
+	k.comp.axis[INTERP_Z].backlash = 12;
+	bench_init(&b, &k);
+	period(&b);
+	assert_int_equal(jog(&b, INTERP_Z, -3), ANSWER_DONE);
+	assert_int_equal(ask(&b, CYCLE_PLACE, INTERP_Z, 5), ANSWER_WRONG_STATE);
+	run_out(&b, STATE_IDLE);
+	period(&b);
+	drive = b.out.target[INTERP_Z];
+	assert_int_equal(ask(&b, CYCLE_PLACE, INTERP_Z, 12.345), ANSWER_DONE);
+	for (int i = 0; i < 100; i++)
+		period(&b);
+	assert_int_equal(b.out.target[INTERP_Z], drive);
+	assert_int_equal(b.c.out.target[INTERP_Z],
+			 lround(12.345 / PULSE_MM));
+	assert_int_equal(jog(&b, INTERP_Z, -1), ANSWER_DONE);
+	run_out(&b, STATE_IDLE);
+	assert_int_equal(b.c.out.target[INTERP_Z],
+			 lround(11.345 / PULSE_MM));
+	assert_int_equal(b.out.target[INTERP_Z],
+			 drive - lround(1 / PULSE_MM));
+	assert_int_equal(ask(&b, CYCLE_PLACE, INTERP_X, 1),
+			 ANSWER_BAD_ARGUMENT);
+	assert_int_equal(ask(&b, CYCLE_PLACE, INTERP_Z, 1e9), ANSWER_BEYOND);
+	assert_int_equal(ask(&b, CYCLE_PLACE, INTERP_Z, NAN),
+			 ANSWER_BAD_ARGUMENT);
+	assert_int_equal(ask(&b, CYCLE_PLACE, INTERP_NAXES, 1),
+			 ANSWER_BAD_ARGUMENT);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -368,6 +406,7 @@ int main(void)
 		cmocka_unit_test(only_axes_with_a_method_are_homed),
 		cmocka_unit_test(unhomed_nothing_is_cut_if_so_configured),
 		cmocka_unit_test(a_program_from_elsewhere_is_refused),
+		cmocka_unit_test(a_person_says_where_an_axis_stands),
 	};
 
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -290,6 +290,10 @@ class Client:
         """Idle: find the place of one axis, or of all."""
         self.ask("home", text=axis)
 
+    def place(self, axis: str, mm: float) -> None:
+        """Idle: say where an axis stands that nothing homes."""
+        self.ask("place", text=f"{axis} is", arg=mm)
+
     def override(self, factor: float) -> None:
         """Speed of positioning, 0 to 2 times what is programmed."""
         self.ask("override", arg=factor)

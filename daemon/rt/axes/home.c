@@ -116,20 +116,25 @@ static uint32_t next_axis(const struct cycle *c)
 	return best;
 }
 
+void home_place(struct cycle *c, uint32_t axis, int32_t place, int32_t drive)
+{
+	const int32_t was = comp_pulses(&c->comp.axis[axis]);
+
+	limit_recount(&c->limit, axis, (uint32_t)drive - (uint32_t)was);
+	c->out.target[axis] = place;
+	comp_settle(&c->comp, &c->config.comp, axis, c->out.target, drive);
+	c->manual.unplaced &= ~(1u << axis);
+}
+
 /* The place that lies @beyond pulses beyond home_at_mm. */
 static void call(struct cycle *c, int32_t beyond, int32_t drive)
 {
 	struct manual *h = &c->manual;
 	const double at = manual_axis(c)->home_at_mm / manual_axis(c)->pulse_mm;
-	const int32_t place = (int32_t)((uint32_t)llround(at) +
-					(uint32_t)beyond);
 
-	limit_recount(&c->limit, h->axis,
-		      (uint32_t)drive - (uint32_t)pulses(c));
-	c->out.target[h->axis] = place;
-	comp_settle(&c->comp, &c->config.comp, h->axis, c->out.target, drive);
+	home_place(c, h->axis, (int32_t)((uint32_t)llround(at) +
+					 (uint32_t)beyond), drive);
 	h->homed |= 1u << h->axis;
-	h->unplaced &= ~(1u << h->axis);
 	h->todo &= ~(1u << h->axis);
 	h->aimed &= ~(1u << h->axis);
 }

@@ -285,6 +285,28 @@ int manual_home(struct cycle *c, uint32_t axis)
 	return ANSWER_DONE;
 }
 
+int manual_place(struct cycle *c, uint32_t axis, double mm)
+{
+	const struct manual_axis *a = &c->config.axis[axis < INTERP_NAXES ?
+						      axis : 0];
+	double place;
+
+	if (c->state != STATE_IDLE || c->loaded ||
+	    c->axes.phase != AXES_FREE)
+		return ANSWER_WRONG_STATE;
+	if (axis >= INTERP_NAXES || !a->present || a->method != HOME_NONE ||
+	    !isfinite(mm))
+		return ANSWER_BAD_ARGUMENT;
+	place = mm / a->pulse_mm;
+	if (place < c->config.travel_min[axis] ||
+	    place > c->config.travel_max[axis])
+		return ANSWER_BEYOND;
+	home_place(c, axis, (int32_t)llround(place),
+		   comp_pulses(&c->comp.axis[axis]));
+	c->manual.used = true;
+	return ANSWER_DONE;
+}
+
 static bool jog_go(struct cycle *c)
 {
 	struct manual *h = &c->manual;

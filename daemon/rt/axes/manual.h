@@ -108,13 +108,21 @@ int manual_press(struct cycle *c, uint32_t arg, double mm_s, int may,
 /** manual_home() - begin to home @axis, or MANUAL_ALL_AXES. */
 int manual_home(struct cycle *c, uint32_t axis);
 
+/**
+ * manual_place() - axis @axis stands at @mm: a person says so.  Nothing moves.
+ * For an axis that nothing homes.  Return: enum cycle_answer.
+ */
+int manual_place(struct cycle *c, uint32_t axis, double mm);
+
 /** manual_ends() - is it told to end, or the time of its press over? */
 bool manual_ends(const struct cycle *c);
 
 /** manual_go() - one period of what was begun. Return: true once it is over. */
 bool manual_go(struct cycle *c, const struct io_inputs *in);
 
-/* home.c, for manual.c: where the search of @axis ends; one period of it. */
+/* home.c, for manual.c: @axis stands at @place while its drive stands at
+ * @drive, in pulses; where its search ends; one period of it. */
+void home_place(struct cycle *c, uint32_t axis, int32_t place, int32_t drive);
 void home_aim(struct cycle *c, uint32_t axis);
 bool home_go(struct cycle *c, const struct io_inputs *in);
 

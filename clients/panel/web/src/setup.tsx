@@ -5,7 +5,7 @@ import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { whyNot } from "./can";
 import { ElectrodeCard } from "./electrodes";
-import { number, short } from "./format";
+import { number, parse, short } from "./format";
 import { sendText } from "./jobs";
 import { link, type Axis } from "./link";
 import { OffsetCard } from "./offsets";
@@ -47,6 +47,22 @@ function JogCard(): JSX.Element {
 			<td><JogKey axis={a} way={1} step={step} speed={speed} /></td></tr>)}</tbody></table>
 		<p class="note">{whyNot("jog") || t(held ? "setup.held.about" : "cut.machine")}</p>
 	</Card>;
+}
+
+/* An axis that nothing homes stands where a person says. */
+function PlaceRow(p: { axis: Axis }): JSX.Element {
+	const [text, set] = useState(""), mm = parse(text), a = p.axis;
+	return <div class="keys wrap place"><b>{a.name}</b>
+		{link.state.lost.includes(a.name) && <PressKey id={`seen-${a.name}`} why={whyNot("home")} onPress={() => void act("place", { text: `${a.name} as-seen`, arg: 0 })}>{t("place.seen")}</PressKey>}
+		<NumberField label={t("place.at", { axis: a.name })} unit={a.rotary ? "deg" : "mm"} value={text} onInput={set} />
+		<PressKey id={`place-${a.name}`} why={Number.isFinite(mm) ? whyNot("home") : t("probe.bad")} onPress={() => { void act("place", { text: `${a.name} is`, arg: mm }); set(""); }}>{t("place.set")}</PressKey></div>;
+}
+
+function PlaceCard(): JSX.Element | null {
+	const axes = (link.hello?.axes ?? []).filter((a) => !a.homes);
+	if (!axes.length) return null;
+	return <Card title={t("place.title")} class="places"><p class="note">{t("place.about")}</p>
+		{axes.map((a) => <PlaceRow key={a.name} axis={a} />)}</Card>;
 }
 
 function HomeCard(): JSX.Element {
@@ -94,5 +110,5 @@ function ProbeCard(): JSX.Element {
 }
 
 export function Setup(): JSX.Element {
-	return <div class="setup-grid"><div><JogCard /><HomeCard /><ElectrodeCard /></div><div><ProbeCard /><OffsetCard /></div></div>;
+	return <div class="setup-grid"><div><JogCard /><HomeCard /><PlaceCard /><ElectrodeCard /></div><div><ProbeCard /><OffsetCard /></div></div>;
 }

@@ -134,6 +134,8 @@ export const en = {
 	"job.interrupted": "interrupted",
 
 	"setup.jog": "Jog", "setup.step": "Step",
+	"place.title": "Place of axes that nothing homes", "place.about": "Nothing moves. Say where an axis stands; as seen is for one that was not moved while the power was off.",
+	"place.seen": "As seen last", "place.at": "{axis} stands at", "place.set": "Take",
 	"setup.home": "Home", "setup.homeall": "Home all axes", "setup.probe": "Probing",
 	"setup.offsets": "Work offsets", "setup.position": "Position",
 	"setup.homed": "homed", "setup.unhomed": "not homed", "setup.limit": "on its limit switch", "setup.lost": "not certain",

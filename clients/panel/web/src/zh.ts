@@ -115,7 +115,9 @@ export const zh: Record<Word, string> = {
 	"job.queued": "排队", "job.ready": "就绪", "job.running": "运行", "job.held": "保持",
 	"job.done": "完成", "job.fault": "故障", "job.stopped": "已结束", "job.interrupted": "中断",
 
-	"setup.jog": "点动", "setup.step": "步进", "setup.home": "回零",
+	"setup.jog": "点动", "setup.step": "步进", "place.title": "无回零轴的位置", "place.about": "不会移动。请说明轴的实际位置；断电期间未移动的轴可用“如最后所见”。",
+	"place.seen": "如最后所见", "place.at": "{axis} 位于", "place.set": "采用",
+	"setup.home": "回零",
 	"setup.homeall": "所有轴回零", "setup.probe": "测量", "setup.offsets": "工件偏置", "setup.position": "位置",
 	"setup.homed": "已回零", "setup.unhomed": "未回零", "setup.limit": "在限位开关上", "setup.lost": "位置不确定", "setup.nohome": "不需回零",
 	"setup.run": "发送并启动", "setup.make": "将运行的 G 代码", "setup.offsetnote": "各原点在机床上的位置。* 为对刀所得，其余来自机床文件。程序可用 G92 移动。",
