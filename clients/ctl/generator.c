@@ -12,13 +12,14 @@
 
 #define STEPS_MOST	128		/* of a field, without --every */
 #define POLL_MS		10
+#define ODD_IN_ROW	8		/* then it tells nothing as asked */
 #define MORE_S		2.0		/* above confirm_s, until it is late */
 
 /* What a walk found. */
 struct walk {
 	struct ctl *ctl;
 	struct line line;
-	size_t steps, done, odd;
+	size_t steps, done, odd, in_row;
 };
 
 static bool is_true(json_t *o, const char *key)
@@ -241,6 +242,7 @@ static int step(struct walk *w, json_t *f, size_t at, double value)
 		err = settle(w->ctl, at, value, &o, &has);
 	if (err == 0 && !has)
 		tell_odd(w, o, at, value);
+	w->in_row = has ? 0 : w->in_row + 1;
 	json_decref(o);
 	w->done++;
 	snprintf(text, sizeof(text), "%zu of %zu  %s %g %s", w->done, w->steps,
@@ -250,14 +252,51 @@ static int step(struct walk *w, json_t *f, size_t at, double value)
 	return err;
 }
 
+static bool reaches(json_t *f, double value)
+{
+	json_t *values = json_object_get(f, "values"), *v;
+	size_t i;
+
+	json_array_foreach(values, i, v)
+		if (json_number_value(v) == value)
+			return true;
+	return json_array_size(values) == 0 &&
+	       value >= ctl_number_of(f, "min") &&
+	       value <= ctl_number_of(f, "max");
+}
+
+/* What nobody asks for stays as it was asked last: so that is what it told
+ * before. */
+static int give_back(struct walk *w, json_t *f, size_t at)
+{
+	const double told = ctl_number_of(f, "told");
+	json_t *o = NULL;
+	bool has;
+	int err = 0;
+
+	if (!json_is_number(json_object_get(f, "asked")) &&
+	    json_is_number(json_object_get(f, "told")) && reaches(f, told)) {
+		err = try(w->ctl, ctl_text_of(f, "name"), told);
+		if (err == 0)
+			err = settle(w->ctl, at, told, &o, &has);
+		json_decref(o);
+	}
+	return err ? err : try(w->ctl, ctl_text_of(f, "name"), NAN);
+}
+
+static bool gives_up(const struct walk *w)
+{
+	return w->in_row >= ODD_IN_ROW;
+}
+
 static int walk_field(struct walk *w, json_t *f, size_t at)
 {
 	int err = 0;
 
-	for (size_t i = 0; err == 0 && i < steps_of(f); i++)
+	for (size_t i = 0; err == 0 && i < steps_of(f) && !gives_up(w); i++)
 		if (is_taken(w->ctl, f, i))
 			err = step(w, f, at, value_at(f, i));
-	return err ? err : try(w->ctl, ctl_text_of(f, "name"), NAN);
+	return err ? err : give_back(w, f, at);
 }
 
 static void on_back(void *arg, int err, const struct talk_ack *a)
@@ -285,8 +324,9 @@ static int walk_end(struct walk *w, int err)
 	if (w->ctl->json)
 		printf("{\"steps\": %zu, \"odd\": %zu}\n", w->done, w->odd);
 	else
-		printf("%zu steps, %zu not told as asked; all is as it was "
-		       "before\n", w->done, w->odd);
+		printf("%zu of %zu steps%s, %zu not told as asked; all is as "
+		       "it was before\n", w->done, w->steps, gives_up(w) ?
+		       ", the last ones all odd" : "", w->odd);
 	return w->odd ? 1 : 0;
 }
 
@@ -311,7 +351,7 @@ static int walk(struct ctl *c)
 	talk_catch_signals();
 	line_init(&w.line);
 	json_array_foreach(fields, at, f)
-		if (err == 0 && is_walked(f))
+		if (err == 0 && is_walked(f) && !gives_up(&w))
 			err = walk_field(&w, f, at);
 	line_end(&w.line);
 	json_decref(o);

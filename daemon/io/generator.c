@@ -278,11 +278,12 @@ static void generator_close(void *self)
 	}
 	if (g->fd >= 0)
 		generator_can_write(g);
-	if (g->modbus) {
+	if (g->modbus)
 		g->modbus_write(g);
-		g->modbus_end(g->modbus);
-	}
 	g->axes.close(g->axes.self);
+	/* The last: it may wait for an answer. */
+	if (g->modbus)
+		g->modbus_end(g->modbus);
 	generator_forget(g);
 }
 

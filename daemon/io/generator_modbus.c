@@ -61,11 +61,15 @@ struct word_slot {
 _Static_assert(sizeof(struct wish) % 8 == 0 && sizeof(struct word) % 8 == 0,
 	       "stamped.h wants whole words");
 
-/* Registers that are written, in the order of their addresses. */
+/* Registers that are written, in the order of their addresses.  Bits that
+ * nobody asks for stay as they were read, also those of others. */
 struct bank {
-	uint16_t address[PROCESS_NFIELDS], image[PROCESS_NFIELDS];
-	bool due[PROCESS_NFIELDS], kept[PROCESS_NFIELDS];	/* kept: the
-					 * slave has this image */
+	uint16_t address[PROCESS_NFIELDS];
+	uint16_t image[PROCESS_NFIELDS];	/* as it is to be, or is */
+	bool due[PROCESS_NFIELDS];	/* to be written */
+	bool kept[PROCESS_NFIELDS];	/* the slave has this image */
+	uint16_t read[PROCESS_NFIELDS];
+	bool was_read[PROCESS_NFIELDS];
 	int n;
 };
 
@@ -185,40 +189,66 @@ static int field_at(const struct generator_modbus *m, uint16_t address)
 	return i;
 }
 
-static int slot_of(struct bank *b, uint16_t address)
+static int bank_find(const struct bank *b, uint16_t address)
 {
 	int i = 0;
 
-	while (i < b->n && b->address[i] < address)
+	while (i < b->n && b->address[i] != address)
 		i++;
-	if (i < b->n && b->address[i] == address)
-		return i;
-	memmove(b->address + i + 1, b->address + i,
-		(size_t)(b->n - i) * sizeof(b->address[0]));
+	return i < b->n ? i : -1;
+}
+
+static void bank_add(struct bank *b, uint16_t address)
+{
+	int i = b->n;
+
+	if (bank_find(b, address) >= 0)
+		return;
+	for (; i > 0 && b->address[i - 1] > address; i--)
+		b->address[i] = b->address[i - 1];
 	b->address[i] = address;
 	b->n++;
-	return i;
+}
+
+static unsigned int mask_of(const struct config_way *w)
+{
+	return ((1u << w->bits) - 1) << w->bit;
+}
+
+/* The bits of a register that are asked for, and which these are. */
+static unsigned int bits_asked(const struct generator_modbus *m, int at,
+			       const struct wish *w, unsigned int *ret_mask)
+{
+	unsigned int bits = 0;
+
+	*ret_mask = 0;
+	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+		const struct config_way *y = &m->way[i];
+
+		if (!(w->given >> i & 1) || y->id != m->bank.address[at])
+			continue;
+		*ret_mask |= mask_of(y);
+		bits |= (unsigned int)w->count[i] << y->bit & mask_of(y);
+	}
+	return bits;
 }
 
 static void bank_take(struct generator_modbus *m, const struct wish *w)
 {
 	struct bank *b = &m->bank;
 
-	for (int i = 0; i < PROCESS_NFIELDS; i++) {
-		const struct config_way *y = &m->way[i];
-		const unsigned int mask = ((1u << y->bits) - 1) << y->bit;
-		unsigned int was, now;
-		int at;
+	for (int i = 0; i < b->n; i++) {
+		unsigned int mask;
+		const unsigned int bits = bits_asked(m, i, w, &mask);
+		const unsigned int other = b->was_read[i] ? b->read[i] :
+					   b->image[i];
 
-		if (!(w->given >> i & 1))
+		b->due[i] = mask && !(b->kept[i] &&
+				      (b->image[i] & mask) == bits);
+		if (!b->due[i])
 			continue;
-		at = slot_of(b, y->id);
-		was = b->image[at];
-		now = (was & ~mask) | ((unsigned int)w->count[i] << y->bit &
-				       mask);
-		b->image[at] = (uint16_t)now;
-		b->kept[at] = b->kept[at] && now == was;
-		b->due[at] = !b->kept[at];
+		b->image[i] = (uint16_t)((other & ~mask) | bits);
+		b->kept[i] = false;
 	}
 }
 
@@ -291,14 +321,12 @@ static bool is_odd(struct generator_modbus *m, int field)
 {
 	const struct config_way *w = &m->way[field], *t = &m->told[field];
 	const struct bank *b = &m->bank;
-	int at = 0;
+	const int at = bank_find(b, w->id);
 
 	if (w->kind != WAY_REGISTER || t->input || t->id != w->id ||
 	    t->bit != w->bit || t->bits != w->bits)
 		return false;
-	while (at < b->n && b->address[at] != w->id)
-		at++;
-	return at < b->n && b->kept[at] &&
+	return at >= 0 && b->kept[at] &&
 	       ((unsigned int)b->image[at] >> w->bit &
 		((1u << w->bits) - 1)) != m->word.count[field];
 }
@@ -316,7 +344,12 @@ static int read_run(struct generator_modbus *m, const uint8_t *field, int n)
 		refused(m, field[0], err);
 	for (int i = 0; i < n && err == 0; i++) {
 		const struct config_way *w = &m->told[field[i]];
+		const int at = w->input ? -1 : bank_find(&m->bank, w->id);
 
+		if (at >= 0) {
+			m->bank.read[at] = got[w->id - first->id];
+			m->bank.was_read[at] = true;
+		}
 		m->word.count[field[i]] = (uint16_t)
 			(got[w->id - first->id] >> w->bit &
 			 ((1u << w->bits) - 1));
@@ -410,8 +443,10 @@ static void exchange(struct generator_modbus *m)
 	m->odd = m->odd && w.version == m->took && w.again == m->again;
 	m->took = w.version;
 	m->again = m->word.again = w.again;
-	bank_take(m, &w);
 	modbus_flush(m->link);
+	if (m->word.number == 0 && read_told(m) < 0)
+		return;
+	bank_take(m, &w);
 	err = write_due(m);
 	if (err < 0 || read_told(m) != 0)
 		return;
@@ -624,6 +659,9 @@ static struct generator_modbus *modbus_make(struct generator *g,
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		if (m->told[i].kind == WAY_REGISTER)
 			m->tells |= 1u << i;
+	for (int i = 0; i < PROCESS_NFIELDS; i++)
+		if (m->way[i].kind == WAY_REGISTER)
+			bank_add(&m->bank, m->way[i].id);
 	m->took = m->word.version = m->word.refused = NONE;
 	sem_init(&m->wake, 0, 0);
 	return m;

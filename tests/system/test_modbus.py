@@ -92,12 +92,15 @@ def test_a_condition_reaches_it_whole(shop):
 
 
 def test_a_walk_goes_through_each_step_and_all_is_as_before(shop):
+    shop.slave.block.setValues(11, [60, 80, 200, 180, 1])
+    rig.until(lambda: shop.told()[1]["ignition_v"]["told"] == 180)
     p = shop.m.ctl("generator", "walk", "--every", "9000", timeout=120)
     assert p.returncode == 0, p.stdout + p.stderr
     assert " 0 not told as asked; all is as it was before" in p.stdout
     peaks = [w[3][0] for w in shop.slave.writes if w[2] == 10]
     assert min(peaks) == 1 and max(peaks) >= 9000
-    assert {shop.slave.get(14) & 3} <= {0, 1, 2, 3}
+    assert [shop.slave.get(a) for a in range(10, 15)] == [
+        60, 80, 200, 180, 1]
     assert all(f["asked"] is None for f in shop.told()[1].values())
 
 
@@ -109,6 +112,35 @@ def test_a_walk_finds_what_is_told_otherwise(tcp):
     assert "peak_a" not in [r.split()[0] for r in p.stdout.splitlines()
                             if ": asked" in r]
     assert all(f["asked"] is None for f in tcp.told()[1].values())
+
+
+def test_a_walk_that_a_job_ends_asks_for_nothing_more(tcp):
+    walk = subprocess.Popen(
+        [str(rig.BUILD / "edmctl"), "--machine", tcp.m.name, "generator",
+         "walk"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    rig.until(lambda: tcp.slave.get(10) > 0, 20)
+    tcp.cut()
+    out, err = walk.communicate(timeout=60)
+    assert walk.returncode == 1, out
+    assert "without sparks: no job loaded" in err
+    assert tcp.slave.get(10) == 60
+
+
+def test_a_walk_of_one_that_falls_silent_ends(tmp_path):
+    quick = "\nmodbus_timeout_ms = 90\nsilent_ms = 300\nconfirm_s = 0.05\n"
+    with Slave() as slave, make(tmp_path, slave) as m:
+        text = m.config.read_text()
+        for line in ("modbus_timeout_ms = 900", "silent_ms = 2000",
+                     "confirm_s = 3"):
+            text = text.replace(line + "\n", "")
+        m.config.write_text(text + quick)
+        (tmp_path / "shop.tech").write_text(TABLE)
+        m.start()
+        Shop(m, slave).until_in_force()
+        slave.silent = True
+        p = m.ctl("generator", "walk")
+        assert p.returncode == 1
+        assert "8 of " in p.stdout and "8 not told as asked" in p.stdout
 
 
 def test_an_edmd_that_dies_in_a_walk_has_nothing_tried(tcp):
