@@ -25,6 +25,8 @@
 #define LINE_POINTS	4		/* a line has no more: it sags by a
 					 * parabola at most */
 #define END_WEIGHT_MM	0.05
+#define WINDOW		32	/* nodes: where a part is looked for first */
+#define WINDOWS		4	/* the next one has so many times as many */
 
 static double at(const struct run *r, size_t i, uint32_t k)
 {
@@ -470,27 +472,36 @@ static int find_corners(const struct run *r, struct ends *e)
 	return err;
 }
 
+/* A part is looked for in a window, which grows as long as there is no corner
+ * in it: so what a node costs does not depend on how far the run goes on. */
 int sections_parts(const struct run *r,
 	      int (*found)(void *to, struct run_part *p), void *to)
 {
 	struct ends ends = { NULL, 0, 0 };
 	struct run_part part = { .first = 0 };
 	int err = find_corners(r, &ends);
+	size_t window = WINDOW;
 
 	while (err == 0 && ends.n > 0) {
+		const size_t end = ends.at[ends.n - 1];
 		size_t cut;
 
-		part.last = ends.at[ends.n - 1];
+		part.last = end - part.first > window ? part.first + window :
+							end;
 		err = fit(r, &part, &cut);
 		if (err == 0 && cut < part.last) {
 			err = push(&ends, cut);
-			continue;
+		} else if (err == 0 && part.last < end) {
+			window *= WINDOWS;
+			shape_free(&part.shape);
+		} else {
+			if (err == 0)
+				err = found(to, &part);
+			shape_free(&part.shape);
+			part.first = part.last;
+			window = WINDOW;
+			ends.n--;
 		}
-		if (err == 0)
-			err = found(to, &part);
-		shape_free(&part.shape);
-		part.first = part.last;
-		ends.n--;
 	}
 	free(ends.at);
 	return err;
