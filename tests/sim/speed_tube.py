@@ -7,63 +7,32 @@ its limits.  The least share of its limits that suffices is found by a linear
 program.  Nothing else is known here: neither how the program was made, nor how
 its speed was.
 """
-import itertools
+import importlib.util
 import math
 import re
+import sys
 
-import highspy
 import numpy as np
 
+from edmsim import ROOT
+
 TOLERANCE_MM, CORNER_MM = 0.001, 0.005      # [speed], as by default
+DT_S = 1e-3             # between two samples
 RATE_MOST = 20          # beside the path, a rounding of it counts so often
-WINDOW = 120            # samples at a time; half of them again with the next ones
-LEAST = 8               # of fewer nothing is said
 
 
-def differences(n):
-    """Rows of first, second and third differences of @n samples."""
-    for order, row in enumerate(((-1, 1), (1, -2, 1), (-1, 3, -3, 1))):
-        for i in range(n - order - 1):
-            yield order, i, row
+def limits_module():
+    """The judge that users have.  By its path: tests of messages have another
+    package of the name edm."""
+    path = ROOT / "clients/python/edm/limits.py"
+    spec = importlib.util.spec_from_file_location("edm_limits", path)
+    sys.modules[spec.name] = module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
 
 
-def least_share(x, width, limits, dt):
-    """Of its v, a and j, what an axis needs to be within @width of each place @x,
-    a time @dt apart."""
-    scale = [1 / (limit * dt ** (k + 1)) for k, limit in enumerate(limits)]
-    asked = [np.diff(x, k + 1) * scale[k] for k in range(3)]
-    raw = max(np.abs(q).max() for q in asked)
-    return raw if raw <= 1 else solve(len(x), width, scale, asked)
-
-
-def solve(n, width, scale, asked):
-    """Variables: by how much of the width each place is off, and the share."""
-    starts, index, value, upper = [0], [], [], []
-    for order, i, row in differences(n):
-        by = width * scale[order]
-        for sign in 1, -1:
-            index += [*range(i, i + len(row)), n]
-            value += [sign * by * c for c in row] + [-1]
-            upper.append(-sign * asked[order][i])
-            starts.append(len(index))
-    lp = highspy.HighsLp()
-    lp.num_col_, lp.num_row_ = n + 1, len(upper)
-    lp.col_cost_ = np.append(np.zeros(n), 1)
-    lp.col_lower_ = np.append(-np.ones(n), 0)
-    lp.col_upper_ = np.append(np.ones(n), highspy.kHighsInf)
-    lp.row_lower_ = np.full(len(upper), -highspy.kHighsInf)
-    lp.row_upper_ = np.array(upper)
-    lp.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
-    lp.a_matrix_.start_ = np.array(starts)
-    lp.a_matrix_.index_ = np.array(index)
-    lp.a_matrix_.value_ = np.array(value)
-    h = highspy.Highs()
-    h.setOptionValue("output_flag", False)
-    h.setOptionValue("threads", 1)
-    h.passModel(lp)
-    h.run()
-    assert h.getModelStatus() == highspy.HighsModelStatus.kOptimal
-    return h.getInfo().objective_function_value
+judge = limits_module()
+least_share = judge.least_share
 
 
 class Way:
@@ -113,11 +82,9 @@ def windows(way, s):
     for first, last in way.parts.values():
         at = np.nonzero((s >= way.s[first] - 1e-9) &
                         (s <= way.s[last] + 1e-9))[0]
-        for i in itertools.count(0, WINDOW // 2):
-            if len(at) - i < LEAST or (i > 0 and len(at) - i <= WINDOW // 2):
-                break
-            some = at[i:i + WINDOW]
-            yield some[0], some[-1]
+        for some in judge.windows(at):
+            if len(some) >= judge.LEAST:
+                yield some[0], some[-1]
 
 
 def shares(way, s, limits, dt):

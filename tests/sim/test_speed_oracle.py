@@ -16,10 +16,10 @@ import pytest
 import speed_tube
 from edmsim import done
 from speed_programs import KINDS, machine, program
+from speed_tube import DT_S
 
 RUNS = int(os.environ.get("EDM_RUNS", "2"))
 FIRST = int(os.environ.get("EDM_SEED", "1"))
-DT_S = 1e-3
 GOAL = 1.05             # of each limit of each axis
 MOST = 1.15             # in two of 80 programs of a class: lines as short as
 EXCEPT = 40             # their rounding
