@@ -523,6 +523,8 @@ void queue_step(struct jobs *j, int64_t now_us)
 
 	if (s->state != SHM_FAULT)
 		q->fault_told = 0;
+	else
+		upload_hold_all(&j->uploads);
 	early_step(j, now_us);
 	if (q->job.n && s->program == q->job.n) {
 		q->missing_us = 0;

@@ -5,9 +5,9 @@
  * What SQLite has written last is in the log alone.  It takes a log up to the
  * first frame that is damaged, and says nothing of what lay behind it: a
  * machine would cut by the work offsets of before.  The index of the log (-shm)
- * has how many frames were written and synced.  It outlives a kill, and SQLite makes it
- * anew when it opens the database.  After a power cut it may be an older one,
- * which says less or tells of a log before this one.
+ * has how many frames were written and synced.  It outlives a kill, and SQLite
+ * makes it anew when it opens the database.  After a power cut it may be an
+ * older one, which says less or tells of a log before this one.
  *
  * https://sqlite.org/walformat.html
  */

@@ -288,6 +288,19 @@ void upload_forget(struct uploads *u, struct upload *up, int code,
 	upload_clear(up);
 }
 
+bool upload_hold_all(struct uploads *u)
+{
+	bool any = false;
+
+	for (int i = 0; i < UPLOAD_SLOTS; i++) {
+		struct upload *up = &u->slot[i];
+
+		up->hold = up->hold || up->state != UPLOAD_FREE;
+		any = any || up->state != UPLOAD_FREE;
+	}
+	return any;
+}
+
 int upload_expire(struct uploads *u, int64_t now_us)
 {
 	int dropped = 0;

@@ -90,6 +90,12 @@ void upload_forget(struct uploads *u, struct upload *up, int code,
 		   const char *reason, const char *body);
 
 /**
+ * upload_hold_all() - motion is ended: what is sent or checked now waits for a
+ * start.  Return: is there any?
+ */
+bool upload_hold_all(struct uploads *u);
+
+/**
  * upload_expire() - drop uploads that have waited too long.
  *
  * Return: how many were dropped.

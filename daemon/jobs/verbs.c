@@ -188,7 +188,8 @@ static void on_answer(void *arg, int code)
 		verbs_answer(j, &c, EX_UNAVAILABLE, gone(code));
 	else if (code == -ESHUTDOWN)
 		;			/* the next service knows more */
-	else if (code > 0 && a->verb->run == verb_stand && queue_is_kept(j))
+	else if (code > 0 && a->verb->run == verb_stand &&
+		 (queue_is_kept(j) || upload_hold_all(&j->uploads)))
 		verbs_answer(j, &c, 0, "nothing runs; what waits begins at the "
 			     "next start");
 	else if (code == SHM_NO_PROGRAM)
@@ -332,10 +333,20 @@ static void verb_machine(struct jobs *j, const struct verb *v,
 	ask_machine(j, v, c, 0);
 }
 
-/* A job that is still compiled or loaded would begin behind it. */
+/* A reset may come before the fault is seen. */
+static void verb_estop(struct jobs *j, const struct verb *v,
+		       const struct jobs_lcm_command *c)
+{
+	upload_hold_all(&j->uploads);
+	verb_machine(j, v, c);
+}
+
+/* A job that is still sent, checked, compiled or loaded would begin behind
+ * it. */
 static void verb_stand(struct jobs *j, const struct verb *v,
 		       const struct jobs_lcm_command *c)
 {
+	upload_hold_all(&j->uploads);
 	asks_held(j, c);
 	queue_keep(j);
 	mdi_give_up(j);
@@ -695,7 +706,7 @@ static const struct verb verbs[] = {
 	  "a job, and no fault; reset first" },
 	{ "set", ROLE_OPERATOR, VERB_ACTS, verb_set, SHM_DO_SET,
 	  "fewer than 64 values set in a job" },
-	{ "estop", ROLE_OPERATOR, VERB_ENDS, verb_machine, SHM_DO_ESTOP,
+	{ "estop", ROLE_OPERATOR, VERB_ENDS, verb_estop, SHM_DO_ESTOP,
 	  "nothing" },
 	{ "reset", ROLE_OPERATOR, VERB_ACTS, verb_machine, SHM_DO_RESET,
 	  "a fault" },

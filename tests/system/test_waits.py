@@ -343,3 +343,25 @@ def test_a_read_lock_on_the_status_blocks_no_restart(machine):
         [str(BUILD / "edmd"), "--config", str(machine.config)],
         capture_output=True, text=True, timeout=20)
     assert r.returncode == 69, "a second edmd"
+
+
+@pytest.mark.parametrize("ends", [("stop",), ("hold",), ("estop", "reset")])
+def test_what_is_sent_while_motion_is_ended_waits_for_a_start(machine, ends):
+    """A long text is checked for minutes: who ends motion meanwhile is not
+    taken by surprise."""
+    c = machine.client
+    pieces = c.chunks(QUICK_JOB, "late", size=10)
+    c.send(pieces[:-1])
+    c.heard(lambda: all(c.acks_to(p.seq) for p in pieces[:-1]))
+    a = c.ask(ends[0])
+    assert a.code == 0, a.reason
+    for verb in ends[1:]:
+        assert c.ask(verb).code == 0
+    c.send(pieces[-1:])
+    a = c.heard(lambda: c.verdict(pieces))
+    assert a.code == 0 and "it will wait for start" in a.reason, a.reason
+    c.job_where("late", "ready")
+    c.hear(0.5)
+    assert c.job("late")["state"] == "ready", "it began by itself"
+    assert c.ask("start").code == 0
+    c.job_where("late", "done")
