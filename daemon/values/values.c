@@ -133,6 +133,18 @@ static json_t *as_names(const bool own[INTERP_NTECH])
 	return a;
 }
 
+/* What the generator tells, if it tells something. */
+static json_t *told_of(const struct shm_snapshot *s)
+{
+	json_t *o = json_object();
+
+	for (int i = 0; i < SHM_NGENERATOR; i++)
+		if (s->tells >> i & 1 && isfinite(s->told[i]))
+			json_object_set_new(o, interp_tech_field[i].name,
+					    json_real(s->told[i]));
+	return o;
+}
+
 void values_fill(struct values *v, const struct shm_status *status,
 		 const struct shm_snapshot *s, json_t *to)
 {
@@ -155,6 +167,7 @@ void values_fill(struct values *v, const struct shm_status *status,
 	json_object_set_new(to, "condition", json_string(name));
 	json_object_set_new(to, "values", values_json(&t));
 	json_object_set_new(to, "set", as_names(own));
+	json_object_set_new(to, "told", told_of(s));
 }
 
 json_t *values_fields(void)

@@ -85,6 +85,8 @@ def test_a_condition_reaches_it_whole(shop):
     told = shop.until_in_force()
     assert told["peak_a"]["told"] == pytest.approx(12)
     assert told["off_us"]["by"] == "register"
+    values = json.loads(shop.c.ask("values").body)
+    assert values["told"]["ignition_v"] == pytest.approx(120)
     # Nothing is written that the slave has.
     n, reads = len(shop.slave.writes), shop.slave.reads
     rig.until(lambda: shop.slave.reads > reads + 5)

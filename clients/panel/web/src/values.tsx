@@ -51,6 +51,7 @@ function One(p: { field: Field; autofocus?: boolean }): JSX.Element {
 	return <div class="value"><div class="value-head"><b>{fieldWord(f.name, f.help)}</b><code>{f.name}</code></div>
 		<div class="stepper"><Key id={`less-${f.name}`} label={`${f.name} \u2212`} why={why} onPress={() => go((value ?? min) - step)}>{"\u2212"}{short(step)}</Key>
 			<output>{value === undefined ? "\u2013" : short(value)} <u>{unitWord(f.unit)}</u></output>
+			{s.told[f.name] !== undefined && <em>{t("cut.told", { value: short(s.told[f.name] as number) })}</em>}
 			<Key id={`more-${f.name}`} label={`${f.name} +`} why={why} onPress={() => go((value ?? min) + step)}>+{short(step)}</Key></div>
 		<div class="keys"><NumberField label={t("cut.range", { min: short(min), max: short(max), unit: unitWord(f.unit) })} unit={unitWord(f.unit)} value={text} onInput={set} onEnter={() => { if (text && !bad) go(x); }} />
 			<Key why={why || (text === "" || bad ? t("cut.range", { min: short(min), max: short(max), unit: unitWord(f.unit) }) : "")} onPress={() => go(x)}>{t("cut.set")}</Key>
@@ -75,6 +76,7 @@ export function ValuesSheet(p: { onClose: () => void }): JSX.Element {
 		{one ? <><One field={one} /><Key class="quiet" onPress={() => set("")}>{t("cut.more")}</Key></> :
 			<ul class="valuelist">{fields.map((f) => <li><button type="button" onClick={() => set(f.name)}>
 				<span>{fieldWord(f.name, f.help)}</span><b>{s.values[f.name] === undefined ? "\u2013" : short(s.values[f.name] as number)} <u>{unitWord(f.unit)}</u></b>
+				{s.told[f.name] !== undefined && <em>{t("cut.told", { value: short(s.told[f.name] as number) })}</em>}
 				{s.set.includes(f.name) && <em>{t("cut.setby")}</em>}</button></li>)}</ul>}
 		<p class="note">{whyNot("set") || t("cut.setnote")}</p>
 	</Sheet>;
