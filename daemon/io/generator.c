@@ -35,9 +35,27 @@ static const char *exception_words(int code)
 	return code > 0 && code < 5 ? words[code] : "";
 }
 
+/* A value that is not given, or was not told yet. */
+static const char *value_text(double value, char buf[24])
+{
+	snprintf(buf, 24, isnan(value) ? "nothing" : "%g", value);
+	return buf;
+}
+
+static void put_values(const struct generator_note *n, const char *how,
+		       char *buf, size_t size)
+{
+	char asked[24], told[24];
+
+	snprintf(buf, size, "generator: %s %s: asked %s, told %s",
+		 process_name(n->field), how, value_text(n->asked, asked),
+		 value_text(n->told, told));
+}
+
 static void put_text(const struct generator_note *n, char *buf, size_t size)
 {
 	const char *name = process_name(n->field);
+	char asked[24];
 
 	switch (n->kind) {
 	case GENERATOR_SILENT:
@@ -45,20 +63,18 @@ static void put_text(const struct generator_note *n, char *buf, size_t size)
 			 "more", name);
 		break;
 	case GENERATOR_DIFFERS:
-		snprintf(buf, size, "generator: %s was in force and is no "
-			 "more: asked %g, told %g", name, n->asked, n->told);
+		put_values(n, "was in force and is no more", buf, size);
 		break;
 	case GENERATOR_LATE:
-		snprintf(buf, size, "generator: %s is not in force in "
-			 "confirm_s: asked %g, told %g", name, n->asked,
-			 n->told);
+		put_values(n, "is not in force in confirm_s", buf, size);
 		break;
 	case GENERATOR_LINES_LOST:
 		snprintf(buf, size, "generator: its lines do not answer");
 		break;
 	case GENERATOR_REFUSES:
-		snprintf(buf, size, "generator: it refuses %s: asked %g, "
-			 "answered exception %d%s", name, n->asked, n->code,
+		snprintf(buf, size, "generator: it refuses %s: asked %s, "
+			 "answered exception %d%s", name,
+			 value_text(n->asked, asked), n->code,
 			 exception_words(n->code));
 		break;
 	case GENERATOR_LINK_DOWN:
@@ -153,20 +169,32 @@ static int odd_one(const struct generator *g)
 	return -1;
 }
 
+static bool is_silent(struct generator *g)
+{
+	bool silent = false;
+
+	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+		if (!answers(g, i) || g->age[i] <= g->silent)
+			continue;
+		silent = true;
+		trouble_of(g, GENERATOR_SILENT, i);
+	}
+	return silent;
+}
+
 static void look(struct generator *g)
 {
+	const bool silent = is_silent(g);
 	const int odd = odd_one(g);
 
-	for (int i = 0; i < PROCESS_NFIELDS; i++)
-		if (answers(g, i) && g->age[i] > g->silent)
-			trouble_of(g, GENERATOR_SILENT, i);
-	if (odd < 0) {
+	if (odd < 0 && !silent) {
 		g->says.in_force = g->asked;
 		g->waited = 0;
 	} else if (g->says.in_force == g->asked) {
-		trouble_of(g, GENERATOR_DIFFERS, odd);
+		if (odd >= 0)
+			trouble_of(g, GENERATOR_DIFFERS, odd);
 		g->says.in_force = g->asked - 1;
-	} else if (++g->waited > g->confirm) {
+	} else if (odd >= 0 && ++g->waited > g->confirm) {
 		trouble_of(g, GENERATOR_LATE, odd);
 	}
 }

@@ -133,11 +133,10 @@ static bool is_delay(int err)
 	return err == EMBXACK || err == EMBXSBUSY;
 }
 
-static void link_down(struct generator_modbus *m, int err)
+static void link_down(struct generator_modbus *m)
 {
 	modbus_close(m->link);
 	m->up = false;
-	m->word.err = err;
 	memset(m->bank.kept, 0, sizeof(m->bank.kept));
 }
 
@@ -147,10 +146,11 @@ static void after_failure(struct generator_modbus *m, int err)
 {
 	const struct timespec pause = { .tv_nsec = 20000000 };
 
-	m->word.err = err;
+	/* Of libmodbus' own ones: the answer cannot be read. */
+	m->word.err = err > MODBUS_ENOBASE ? EBADMSG : err;
 	if (err == ECONNRESET || err == EBADF || err == EPIPE || err == EIO ||
 	    err == ENXIO || err == ENODEV || !m->at.serial) {
-		link_down(m, err);
+		link_down(m);
 		return;
 	}
 	nanosleep(&pause, NULL);

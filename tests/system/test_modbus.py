@@ -204,6 +204,7 @@ def test_one_that_is_silent_is_a_fault(shop):
     shop.slave.silent = True
     shop.logs("it does not tell its peak_a any more")
     shop.logs("Modbus link is down")
+    rig.until(lambda: not shop.told()[0]["in_force"])
     shop.slave.silent = False
     shop.logs("Modbus link is there")
 
