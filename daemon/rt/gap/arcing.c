@@ -18,7 +18,8 @@ static double own_off_us(const struct cycle *c)
 static double off_us_at(const struct cycle *c, uint32_t rung)
 {
 	return own_off_us(c) *
-	       (1 + rung * (c->gap.arcing_off_max - 1) / ARCING_OFF_LAST);
+	       (1 + rung * (c->gap.arcing_off_max - 1) /
+		    (double)ARCING_OFF_LAST);
 }
 
 /* Can this machine take this step?  The off time must reach the generator, and
