@@ -633,7 +633,7 @@ clang:
 		$(PANEL_C) $(PLAN) $(wildcard clients/dds/*.c) | \
 		xargs -P $(SIDE) -n 8 clang -fsyntax-only -Werror $(filter-out -g,$(CFLAGS)) \
 			-Wno-enum-enum-conversion \
-			$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) \
+			$(sort $(INC_edmd) $(INC_io) $(INC_jobs) $(INC_sim) $(INC_ctl) \
 			$(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp))
 
 bench-plan:
