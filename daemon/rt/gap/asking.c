@@ -15,15 +15,18 @@ void asking_init(struct asking *a)
 {
 	*a = (struct asking) { .in_force = true };
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
-		a->now[i] = a->place[i] = a->hand[i] = a->tried[i] =
-			(double)NAN;
+		a->now[i] = a->place[i] = a->hand[i] = (double)NAN;
+}
+
+static bool is_tried(const struct asking *a, int i)
+{
+	return a->trying >> i & 1;
 }
 
 /* What the place asks for, or who tries the generator. */
 static double asked_for(const struct cycle *c, int i)
 {
-	return isnan(c->asking.tried[i]) ? c->out.pulse[i] :
-					   c->asking.tried[i];
+	return is_tried(&c->asking, i) ? c->asking.tried[i] : c->out.pulse[i];
 }
 
 /* ... as the generator can do it. */
@@ -58,14 +61,15 @@ bool asking_try(struct cycle *c, uint32_t field, double value)
 	struct asking *a = &c->asking;
 
 	if (field >= INTERP_NGENERATOR) {
-		for (int i = 0; i < INTERP_NGENERATOR; i++)
-			a->tried[i] = (double)NAN;
+		a->trying = 0;
 		return isnan(value);
 	}
 	if (!isnan(value) && (d->by_hand ||
 			      isnan(process_nearest(d, (int)field, value))))
 		return false;
 	a->tried[field] = value;
+	a->trying = isnan(value) ? a->trying & ~(1u << field) :
+				   a->trying | 1u << field;
 	return true;
 }
 
@@ -154,7 +158,7 @@ static void ask(struct cycle *c)
 		a->needed = ++a->version;
 		a->age = 0;
 	}
-	if (!isnan(a->tried[INTERP_TECH_OFF_US]))
+	if (is_tried(a, INTERP_TECH_OFF_US))
 		return;
 	off_us = asking_off_us(c, arcing_off_us(c));
 	if (same(off_us, a->now[INTERP_TECH_OFF_US]))
@@ -179,10 +183,13 @@ static void ask_freely(struct cycle *c)
 	struct asking *a = &c->asking;
 	double now[INTERP_NGENERATOR];
 
-	for (int i = 0; i < INTERP_NGENERATOR; i++)
-		now[i] = asked_for(c, i);
-	if (isnan(a->tried[INTERP_TECH_OFF_US]))
-		now[INTERP_TECH_OFF_US] = arcing_off_us(c);
+	memcpy(now, c->out.pulse, sizeof(now));
+	now[INTERP_TECH_OFF_US] = arcing_off_us(c);
+	for (int i = 0; a->trying && i < INTERP_NGENERATOR; i++)
+		now[i] = is_tried(a, i) ? a->tried[i] : now[i];
+	/* Hardly ever is there anything new. */
+	if (memcmp(now, a->now, sizeof(now)) == 0)
+		return;
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
 		if (same(a->now[i], now[i]))
 			continue;

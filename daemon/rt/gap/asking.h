@@ -47,7 +47,8 @@ struct asking {
 	uint32_t stands;		/* ... or is to set, a bit of each: it
 					 * stands */
 	uint32_t path;			/* io_outputs.path of these */
-	double tried[INTERP_NGENERATOR];	/* without a job; NAN: not */
+	uint32_t trying;		/* without a job, a bit of each ... */
+	double tried[INTERP_NGENERATOR];	/* ... asked for */
 	struct io_generator says;	/* in the last period */
 	bool has;			/* the generator has all of `now` */
 };
