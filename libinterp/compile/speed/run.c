@@ -25,8 +25,8 @@
 #define LINE_POINTS	4		/* a line has no more: it sags by a
 					 * parabola at most */
 #define END_WEIGHT_MM	0.05
-#define WINDOW		32	/* nodes: where a part is looked for first */
-#define WINDOWS		4	/* the next one has so many times as many */
+#define WINDOW		16	/* nodes: where a part is looked for first */
+#define WINDOWS		16	/* the next one has so many times as many */
 
 static double at(const struct run *r, size_t i, uint32_t k)
 {
@@ -486,8 +486,8 @@ int sections_parts(const struct run *r,
 		const size_t end = ends.at[ends.n - 1];
 		size_t cut;
 
-		part.last = end - part.first > window ? part.first + window :
-							end;
+		part.last = end - part.first > 2 * window ?
+				    part.first + window : end;
 		err = fit(r, &part, &cut);
 		if (err == 0 && cut < part.last) {
 			err = push(&ends, cut);
