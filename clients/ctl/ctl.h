@@ -181,6 +181,10 @@ struct line {
 	char text[LINE_MAX_CHARS];	/* of the last status; tty: unused */
 };
 
+/** line_feed() - take the feed of @s in mm/min; jumps and retracts are not of
+ *  the cut. */
+void line_feed(struct mean *m, double now_s, const struct talk_status *s);
+
 void line_init(struct line *l);
 /**
  * line_status() - draw the line.  If stdout is not a terminal, print it once a

@@ -135,6 +135,12 @@ void line_bar(struct line *l, double done, const char *text)
 	draw(l, whole);
 }
 
+void line_feed(struct mean *m, double now_s, const struct talk_status *s)
+{
+	if (strcmp(s->state, "jump") != 0 && strcmp(s->state, "retract") != 0)
+		mean_add(m, now_s, s->feed_mm_s * 60);
+}
+
 static void describe(char *to, size_t size, const struct talk_status *s,
 		     double feed_mm_min)
 {
@@ -178,7 +184,7 @@ void line_status(struct line *l, const struct talk_status *s)
 	char text[LINE_MAX_CHARS], state[sizeof(l->state)];
 	double now_s = talk_now_s();
 
-	mean_add(&l->feed, now_s, s->feed_mm_s * 60);
+	line_feed(&l->feed, now_s, s);
 	what_changes(state, sizeof(state), s);
 	if (!l->tty && now_s - l->told_s < PLAIN_EVERY_S &&
 	    strcmp(state, l->state) == 0)

@@ -83,7 +83,7 @@ static void ask(struct screen *s, double now_s)
 static void take(struct screen *s, const struct talk_status *t, double now_s)
 {
 	mean_add(&s->gap, now_s, t->gap_v);
-	mean_add(&s->feed, now_s, t->feed_mm_s * 60);
+	line_feed(&s->feed, now_s, t);
 }
 
 static void second(struct screen *s, double now_s)

@@ -89,9 +89,9 @@ static void print_row(const struct table_row *r, FILE *f)
 
 	progress_of(m, done, sizeof(done));
 	fprintf(f, "%-14s %-14s %-8s %-30s %9.3f mm %6.1f V "
-		"%8.3f mm/s %6u %6u  %s\n", name.c, host.c, state.c, done,
+		"%6.2f mm/min %6u %6u  %s\n", name.c, host.c, state.c, done,
 		fit(m->depth_mm, 9999), fit(m->gap_v, 999),
-		fit(m->feed_mm_s, 999), m->jumps, m->retracts, needs.c);
+		fit(m->feed_mm_s * 60, 9999), m->jumps, m->retracts, needs.c);
 }
 
 void table_print(const struct table_row *row, size_t n, FILE *f)

@@ -191,11 +191,11 @@ static void follow(struct jobs *j)
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "longer", .job = j->queue.job.id,
 		.place_mm = s->place_mm,
-	}, "job %s takes longer: %s takes %.2f times its forecast; %.0f min "
-		  "are left", j->queue.job.name,
+	}, "job %s takes longer: %s takes %.2f times its forecast; %d min "
+		  "%02d s are left", j->queue.job.name,
 		  *j->eta.forecast.cond[t.cond] ?
 		  j->eta.forecast.cond[t.cond] : "cutting", t.factor,
-		  t.left_s / 60);
+		  (int)t.left_s / 60, (int)t.left_s % 60);
 }
 
 void forecaster_step(struct jobs *j)

@@ -42,7 +42,7 @@ export function Strip(p: StripProps): JSX.Element {
 				x: { time: true, range: () => { const end = latest.current.points[latest.current.points.length - 1]?.[0] ?? Date.now(); return [end / 1000 - latest.current.span, end / 1000]; } },
 				y: { range: (_u, min, max) => latest.current.clip ?? [min ?? 0, (max ?? 1) > (min ?? 0) ? (max as number) : (min ?? 0) + 1] },
 			},
-			axes: p.axes ? [axis({ values: (_u, v) => v.map((x) => new Date(x * 1000).toLocaleTimeString(settings.language, { hour12: false })) , space: 110 }), axis({ size: 56, values: (_u, v) => v.map((x) => short(x)) })] : [{ show: false }, { show: false }],
+			axes: p.axes ? [axis({ values: (_u, v) => v.map((x) => new Date(x * 1000).toLocaleTimeString(settings.language, { hour12: false })) , space: 110 }), axis({ size: 56, values: (_u, v) => v.map((x) => short(p.at === 4 ? x * 60 : x)) })] : [{ show: false }, { show: false }],
 			bands: [{ series: [2, 1], fill: `${colour}38` }],
 			series: [{}, { width: 0, points: { show: false } }, { width: 0, points: { show: false } },
 				{ stroke: colour, width: 1.5, points: { show: false } }],

@@ -42,14 +42,26 @@ function Gap(p: { onOpen: () => void }): JSX.Element {
 	</Card>;
 }
 
+let cutSeen: object | null = null, cutFeed = NaN;
+
+/* While it cuts: the feed of the cut alone, smoothed.  A jump or a retract
+ * leaves it as it was. */
+function feedOfCut(): number {
+	const s = link.state;
+	if (!["erode", "jump", "retract", "approach"].includes(s.state)) { cutFeed = NaN; return s.feed; }
+	if (s.state === "erode" && s !== cutSeen) cutFeed = Number.isNaN(cutFeed) ? s.feed : cutFeed + (s.feed - cutFeed) * 0.1;
+	cutSeen = s;
+	return Number.isNaN(cutFeed) ? s.feed : cutFeed;
+}
+
 function Feed(p: { onOpen: () => void }): JSX.Element {
 	const s = link.state, v = s.values;
-	const slow = Math.abs(s.feed) < 5, most = Math.max(v.feed_max_mm_s ?? 0.5, 0.1);
+	const feed = feedOfCut() * 60, slow = Math.abs(feed) < 100, most = Math.max(v.feed_max_mm_s ?? 0.5, 0.1);
 	const span = Math.abs(s.feed) > most * 1.5 ? Math.max(v.retract_mm_s ?? 5, Math.abs(s.feed)) : most;
 	const share = Math.min(50, Math.abs(s.feed) / span * 50);
-	const way = s.feed > 1e-6 ? "cut.forward" : s.feed < -1e-6 ? "cut.back" : "cut.still";
+	const way = feed > 1e-4 ? "cut.forward" : feed < -1e-4 ? "cut.back" : "cut.still";
 	return <Card class="feed" label={t("cut.feed")}>
-		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{isKnown() ? number(s.feed, slow ? 3 : 1, true) : "\u2013"}</b> <u>mm/s</u> {isKnown() && <em>{t(way)}</em>}</p></div>
+		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{isKnown() ? number(feed, slow ? 2 : 0, true) : "\u2013"}</b> <u>mm/min</u> {isKnown() && <em>{t(way)}</em>}</p></div>
 		<div class="bar feedbar" aria-hidden="true"><i class={s.feed < 0 ? "flow back" : "flow"} style={s.feed < 0 ? { right: "50%", width: `${share}%` } : { left: "50%", width: `${share}%` }} /><i class="zero" /></div>
 		<button type="button" class="stripkey" onClick={p.onOpen} aria-label={t("chart.feed")}>
 			<Strip points={link.points} at={4} colour="--done" label={t("chart.feed")} height={44} span={60} lines={[0]} clip={[-most * 1.2, most * 1.2]} /></button>
@@ -101,7 +113,7 @@ function Past(p: { onClose: () => void }): JSX.Element {
 	return <Sheet title={t("cut.past")} onClose={p.onClose} wide>
 		<Choice label={t("cut.past")} value={span} onChange={set} of={[{ value: "60", text: t("range.60") }, { value: "600", text: t("range.600") }, { value: "3600", text: t("range.3600") }]} />
 		<h3>{t("cut.gap")}, V</h3><Strip points={rows ?? []} at={1} colour="--acc" label={t("chart.gap")} height={190} axes span={Number(span)} />
-		<h3>{t("cut.feed")}, mm/s</h3><Strip points={rows ?? []} at={4} colour="--done" label={t("chart.feed")} height={190} axes span={Number(span)} />
+		<h3>{t("cut.feed")}, mm/min</h3><Strip points={rows ?? []} at={4} colour="--done" label={t("chart.feed")} height={190} axes span={Number(span)} />
 	</Sheet>;
 }
 

@@ -52,7 +52,7 @@ function JogCard(): JSX.Element {
 /* An axis that nothing homes stands where a person says. */
 function PlaceRow(p: { axis: Axis }): JSX.Element {
 	const [text, set] = useState(""), mm = parse(text), a = p.axis;
-	return <div class="keys wrap place"><b>{a.name}</b>
+	return <div class="keys wrap place">
 		{link.state.lost.includes(a.name) && <PressKey id={`seen-${a.name}`} why={whyNot("home")} onPress={() => void act("place", { text: `${a.name} as-seen`, arg: 0 })}>{t("place.seen")}</PressKey>}
 		<NumberField label={t("place.at", { axis: a.name })} unit={a.rotary ? "deg" : "mm"} value={text} onInput={set} />
 		<PressKey id={`place-${a.name}`} why={Number.isFinite(mm) ? whyNot("home") : t("probe.bad")} onPress={() => { void act("place", { text: `${a.name} is`, arg: mm }); set(""); }}>{t("place.set")}</PressKey></div>;
