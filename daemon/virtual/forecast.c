@@ -72,8 +72,9 @@ static void measure(struct run *r)
 	const double s = (double)(c->totals.cycles - r->counted) * r->period_s;
 	const bool cut = is_cut(c);
 	struct forecast_part *p = &r->now;
-	const bool other = cut ? c->cursor.seg.cond != p->cond || !p->cut_s :
-			   !p->other_s;
+	const bool other = cut ? c->cursor.seg.cond != p->cond ||
+				 !(p->cut_s > 0) :
+			   !(p->other_s > 0);
 
 	r->counted = c->totals.cycles;
 	if (c->far_mm > r->far_mm &&
