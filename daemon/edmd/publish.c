@@ -259,6 +259,8 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 	memcpy(s->drive, at.drive, sizeof(s->drive));
 	memcpy(s->off, at.off, sizeof(s->off));
 	s->sure_mm = l->cycle.resync.sure_mm;
+	memcpy(s->moved_mm, l->cycle.resync.moved_mm, sizeof(s->moved_mm));
+	s->moved_beside = (uint8_t)l->cycle.resync.moved_beside;
 	memcpy(s->home_shift, at.shift, sizeof(s->home_shift));
 	memcpy(s->toward, at.toward, sizeof(s->toward));
 	memcpy(s->limit_side, at.limit.side, sizeof(s->limit_side));

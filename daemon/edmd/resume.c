@@ -126,6 +126,7 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 	struct cycle_past past = {
 		.far_mm = isfinite(s->far_mm) ? s->far_mm : s->place_mm,
 		.back_mm = s->back_mm, .sure_mm = s->sure_mm,
+		.moved_beside = s->moved_beside,
 		.found_once = s->found_once, .found_twice = s->found_twice,
 		.pump = s->pump, .mcode = s->mcode, .mcode_at = s->mcode_at,
 		.stand = {
@@ -145,6 +146,7 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 		},
 	};
 
+	memcpy(past.moved_mm, s->moved_mm, sizeof(past.moved_mm));
 	memcpy(past.pos, s->pos, sizeof(past.pos));
 	memcpy(past.shift, s->shift, sizeof(past.shift));
 	memcpy(past.found, s->found, sizeof(past.found));

@@ -302,7 +302,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->outcome = OUTCOME_NONE;
 	c->totals = (struct cycle_totals) { 0 };
 	c->far_mm = far_mm;
-	c->resync.sure_mm = interp_cursor_place_mm(at);
+	resync_begin(&c->resync, interp_cursor_place_mm(at));
 	c->job.action_done = at->index;
 	c->flush = (struct flush) { .far_mm = far_mm };
 	c->job.dwelling = false;

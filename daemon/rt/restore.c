@@ -119,6 +119,10 @@ enum cycle_restored cycle_restore(struct cycle *c,
 		c->back_mm = fmax(c->back_mm, past->back_mm);
 	if (isfinite(past->sure_mm))
 		c->resync.sure_mm = past->sure_mm;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (isfinite(past->moved_mm[i]))
+			c->resync.moved_mm[i] = past->moved_mm[i];
+	c->resync.moved_beside = past->moved_beside;
 	c->resync.sure_beside = escape_is_out(&c->escape);
 	c->totals = past->totals;
 	return RESTORED;

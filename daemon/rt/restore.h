@@ -16,7 +16,9 @@
 
 /* What the killed cycle said last about its job. */
 struct cycle_past {
-	double far_mm, back_mm, sure_mm;	/* the last: resync.h */
+	double far_mm, back_mm;
+	double sure_mm, moved_mm[INTERP_NAXES];	/* resync.h */
+	uint32_t moved_beside;
 	int32_t pos[INTERP_NAXES];	/* where the axes were sent, pulses */
 	int32_t shift[INTERP_NAXES], found[2][INTERP_NAXES];	/* probe.h */
 	uint32_t found_once, found_twice;

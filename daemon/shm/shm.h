@@ -50,7 +50,7 @@
 #include <ck_ring.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	12
+#define SHM_LAYOUT	13
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NGENERATOR	6		/* values of a generator */
 #define SHM_NAME_MAX	32
@@ -151,6 +151,7 @@ struct shm_snapshot {
 	int32_t drive[SHM_NAXES], home_shift[SHM_NAXES], origin[SHM_NAXES];
 	int32_t off[SHM_NAXES];		/* they stand beside that, pulses */
 	double sure_mm;			/* the place where they last did not */
+	double moved_mm[SHM_NAXES];	/* and where each moved last */
 	int8_t toward[SHM_NAXES];
 	int8_t limit_side[SHM_NAXES];	/* of the switches in `limit` */
 	double axes_c;			/* as a PLC told it; 0: not told */
@@ -163,6 +164,8 @@ struct shm_snapshot {
 	uint8_t mcode;			/* M code that was sent to the PLC and
 					 * is not answered; 0: none */
 	uint8_t homed;			/* bit per axis */
+	uint8_t moved_beside;		/* bit per axis: `moved_mm` is beside
+					 * the path */
 	bool has_origin;
 	bool confirmed;			/* what the stand asks for is done */
 	uint32_t stand_of;		/* the electrode's number; a bit of each

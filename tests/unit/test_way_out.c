@@ -284,16 +284,26 @@ static void run_for(struct world *w, double s)
 		period(w);
 }
 
-static void world_make(struct world *w, bool lines)
+/* @peak_mm: there the path turns X round; 0: the line. */
+static void path_make(struct world *w, double peak_mm)
 {
 	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
 	const double end[INTERP_NAXES] = { 3, 1.5 };
+	const double peak[INTERP_NAXES] = { peak_mm, 0.6 };
+	const double behind[INTERP_NAXES] = { 0, 1.2 };
 
+	help_word.feed_mm_s = 8;
+	if (peak_mm > 0)
+		line(b, peak);
+	line(b, peak_mm > 0 ? behind : end);
+	w->m = finish(b);
+}
+
+static void world_make_path(struct world *w, bool lines, double peak_mm)
+{
 	memset(w, 0, sizeof(*w));
 	w->lines = lines;
-	help_word.feed_mm_s = 8;
-	line(b, end);
-	w->m = finish(b);
+	path_make(w, peak_mm);
 	config_defaults(&w->c);
 	w->c.backend = lines ? BACKEND_GPIO : BACKEND_CAN402;
 	w->c.axes = help_machine;
@@ -308,6 +318,11 @@ static void world_make(struct world *w, bool lines)
 	run_for(w, 1);
 	assert_false(w->in.starting);
 	assert_int_equal(cycle_load(&w->cycle, &w->m.p), ANSWER_DONE);
+}
+
+static void world_make(struct world *w, bool lines)
+{
+	world_make_path(w, lines, 0);
 }
 
 static void world_free(struct world *w)
@@ -345,6 +360,7 @@ static void killed(struct world *w)
 	struct cycle_past past = {
 		.far_mm = w->cycle.far_mm,
 		.sure_mm = w->cycle.resync.sure_mm,
+		.moved_beside = w->cycle.resync.moved_beside,
 	};
 	const uint32_t seg = w->cycle.cursor.index, tick = w->cycle.cursor.tick;
 	int32_t zero[IO_NAXES] = { 0 };
@@ -352,6 +368,7 @@ static void killed(struct world *w)
 	struct interp_cursor at;
 	struct axis_state s;
 
+	memcpy(past.moved_mm, w->cycle.resync.moved_mm, sizeof(past.moved_mm));
 	memcpy(past.pos, w->cycle.out.target, sizeof(past.pos));
 	axis_state_get(&w->cycle, &s);
 	if (!w->lines)
@@ -543,6 +560,64 @@ static void every_stop_has_a_way_out_by_every_verb(void **st)
 	}
 }
 
+/* X was blocked in front of the place where the path turns it round; when the
+ * machine stands, the path is behind that place. */
+static void stop_behind_the_peak(struct world *w, bool kill)
+{
+	struct axis *x = &w->axis[INTERP_X];
+	int32_t top = WALL;
+
+	x->wall = WALL;
+	assert_int_equal(ask(w, CYCLE_START, 0), ANSWER_DONE);
+	run_until_x(w, WALL);
+	while (w->cycle.out.target[INTERP_X] >= top - 2 &&
+	       w->cycle.state != STATE_FAULT) {
+		if (w->cycle.out.target[INTERP_X] > top)
+			top = w->cycle.out.target[INTERP_X];
+		period(w);
+	}
+	if (kill) {
+		for (int i = 0; i < 4; i++)
+			period(w);
+		killed(w);
+		return;
+	}
+	w->estop = true;
+	run_for(w, 0.5);
+	w->estop = false;
+	run_for(w, 0.3);
+	assert_int_equal(ask(w, CYCLE_RESET, 0), ANSWER_DONE);
+	run_for(w, 0.3);
+	/* A motor that has lost its pulses goes back with the path. */
+	assert_in_range(x->at, WALL - (w->lines ? 9 : 0), WALL);
+}
+
+/* Killed: drives tell the next edmd where they stand.  An encoder that counts
+ * from where it is does not tell what was lost before. */
+static void an_axis_blocked_before_its_path_turns_is_met_before_that(void **st)
+{
+	static const double peaks_mm[] = { 1.02, 1.04, 1.1, 1.2 };
+	static const char *const hows[] = { "drives", "drives, killed",
+					    "lines" };
+
+	(void)st;
+	for (int i = 0; i < 12; i++) {
+		struct world w;
+
+		print_message("%s, peak %g\n", hows[i % 3], peaks_mm[i / 3]);
+		world_make_path(&w, i % 3 == 2, peaks_mm[i / 3]);
+		stop_behind_the_peak(&w, i % 3 == 1);
+		look_anew(&w);
+		assert_int_equal(ask(&w, CYCLE_RETRACT, 0.3), ANSWER_DONE);
+		stands(&w);
+		was_kind(&w, WALL);
+		assert_true(w.axis[INTERP_X].at < WALL);
+		assert_int_equal(w.axis[INTERP_X].at,
+				 w.cycle.out.target[INTERP_X]);
+		world_free(&w);
+	}
+}
+
 /* Nobody knows what is in the way there; without the job an axis is free. */
 static void an_axis_that_was_moved_far_by_hand_is_not_driven_back(void **st)
 {
@@ -644,6 +719,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_fault_ends_a_way_by_command),
 		cmocka_unit_test(every_stop_has_a_way_out_by_every_verb),
+		cmocka_unit_test(an_axis_blocked_before_its_path_turns_is_met_before_that),
 		cmocka_unit_test(an_axis_that_was_moved_far_by_hand_is_not_driven_back),
 		cmocka_unit_test(without_power_a_verb_is_refused_and_its_return_starts_nothing),
 	};

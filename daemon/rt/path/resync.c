@@ -45,7 +45,7 @@ void resync_set(struct resync *r, const int32_t off[INTERP_NAXES])
 
 bool resync_is_off(const struct cycle *c)
 {
-	return c->resync.is_off;
+	return c->resync.is_off || c->resync.walks;
 }
 
 /* Are the axes without power, or held where they stand? */
@@ -105,12 +105,42 @@ void resync_settle(struct cycle *c)
 		c->manual.from = plus(c->manual.from,
 				      r->off[c->manual.axis]);
 	memset(r->off, 0, sizeof(r->off));
-	r->is_off = false;
+	r->is_off = r->walks = false;
 	memset(r->ran_on, 0, sizeof(r->ran_on));
 	r->held = 0;
 	c->comp.stale = true;
 	c->comp.idle = false;
 	c->manual.used = true;
+}
+
+void resync_begin(struct resync *r, double place_mm)
+{
+	r->sure_mm = place_mm;
+	r->sure_beside = false;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		r->moved_mm[i] = place_mm;
+	r->moved_beside = 0;
+	r->unseen = true;
+}
+
+/* Where does the path have each axis while that axis moves? */
+static void note_moves(struct cycle *c, const struct io_inputs *in)
+{
+	const bool beside = escape_is_out(&c->escape);
+	struct resync *r = &c->resync;
+
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		if (!r->unseen && abs(minus(in->actual[i], r->seen[i])) <=
+		    NEAR_PULSES)
+			continue;
+		r->seen[i] = in->actual[i];
+		if (r->unseen)
+			continue;
+		r->moved_mm[i] = place_mm(c);
+		r->moved_beside &= ~(1u << i);
+		r->moved_beside |= (uint32_t)beside << i;
+	}
+	r->unseen = false;
 }
 
 /* A program is compiled from where the machine stands.  Axes without power
@@ -119,6 +149,8 @@ void resync_look(struct cycle *c, const struct io_inputs *in)
 {
 	struct resync *r = &c->resync;
 
+	if (c->loaded && c->comp.begun && !in->starting)
+		note_moves(c, in);
 	if (stands(c, in)) {
 		measure(c, in);
 		if (!c->loaded && is_far(c))
@@ -140,7 +172,7 @@ void resync_search(struct cycle *c)
 	const double sure_mm = beside == r->sure_beside ? r->sure_mm :
 			       interp_cursor_place_mm(&c->cursor);
 
-	r->held = r->seek = r->met = 0;
+	r->held = r->seek = r->met = r->asked = r->near = 0;
 	r->walks = r->begun = false;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		r->seek |= (uint32_t)(abs(r->off[i]) > NEAR_PULSES) << i;
@@ -191,26 +223,56 @@ static bool scout_step(const struct cycle *c, struct resync *r)
 	return on && r->toward * (r->until_mm - scout_mm(r)) >= 0;
 }
 
+/* In front of moved_mm, where the axis may still have moved by NEAR_PULSES. */
+static void look_near(struct resync *r, int i, int64_t left)
+{
+	const uint32_t bit = 1u << i;
+
+	if (llabs(left) > NEAR_PULSES) {
+		r->near &= ~bit;
+	} else if (left == 0 && !(r->near & bit)) {
+		r->near |= bit;
+		r->met_mm[i] = scout_mm(r);
+	}
+}
+
+/* @left: to where the axis stands. */
+static void look_for(struct resync *r, int i, int64_t left)
+{
+	const uint32_t bit = 1u << i;
+
+	if (!(r->asked & bit))
+		r->left[i] = left;
+	r->asked |= bit;
+	if (r->near & bit) {
+		r->met |= bit;
+		r->seek &= ~bit;
+	} else if (left == 0 || (left < 0) != (r->left[i] < 0)) {
+		r->met_mm[i] = scout_mm(r);
+		r->met |= bit;
+		r->seek &= ~bit;
+	} else if (llabs(left) > llabs(r->left[i]) + NEAR_PULSES) {
+		r->seek &= ~bit;
+	}
+}
+
 /* It is met where the path passes it.  If the path leads away from it, it was
  * not blocked. */
 static void scout_look(const struct cycle *c, struct resync *r)
 {
-	const int32_t *pos = escape_is_out(&r->beside) ? r->beside.pos :
-							 r->scout.pos;
+	const bool beside = escape_is_out(&r->beside);
+	const int32_t *pos = beside ? r->beside.pos : r->scout.pos;
 
 	for (uint32_t m = r->seek; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
-		const int32_t off = r->off[i];
-		const int64_t left = (int64_t)c->out.target[i] + off -
+		const int64_t left = (int64_t)c->out.target[i] + r->off[i] -
 				     pos[i] - c->probe.shift[i];
 
-		if (left == 0 || (left < 0) != (off < 0)) {
-			r->met_mm[i] = scout_mm(r);
-			r->met |= 1u << i;
-			r->seek &= ~(1u << i);
-		} else if (llabs(left) > llabs(off) + NEAR_PULSES) {
-			r->seek &= ~(1u << i);
-		}
+		if (beside != (r->moved_beside >> i & 1) ||
+		    r->toward * (r->moved_mm[i] - scout_mm(r)) <= 0)
+			look_for(r, i, left);
+		else
+			look_near(r, i, left);
 	}
 }
 

@@ -17,8 +17,10 @@
  * 2. What is then left to an axis goes off on a straight line, slowly.
  *
  * The place of step 1 is searched for between the place of the path and
- * sure_mm, the last place where all axes were where they were sent.  An axis
- * that the path only leads away from is not one that was blocked.  It is taken
+ * sure_mm, the last place where all axes were where they were sent.  While an
+ * axis was blocked, it did not move, and the path may have turned: so it is
+ * looked for from moved_mm on, where it moved last.  An axis that the path only
+ * leads away from there is not one that was blocked.  It is taken
  * back by step 2, but not farther than resync_max.
  *
  * Units: pulses of the drives; mm along the path.  Threads: RT-safe.
@@ -48,12 +50,21 @@ struct resync {
 	int32_t ran_on[INTERP_NAXES];	/* farther than max, by itself */
 	double sure_mm;
 	bool sure_beside;		/* ... was beside the path */
+	int32_t seen[INTERP_NAXES];	/* where each axis stands, to
+					 * NEAR_PULSES; */
+	bool unseen;			/* ... not known yet */
+	double moved_mm[INTERP_NAXES];	/* the place when it came there */
+	uint32_t moved_beside;		/* bit per axis: ... was beside */
 	uint32_t held;			/* bit per axis that stays ... */
 	int32_t hold[INTERP_NAXES];	/* ... here */
 	double met_mm[INTERP_NAXES];	/* ... until the path is here */
 	bool walks;
 	/* The search: */
 	uint32_t seek, met;		/* bit per axis to be met, and met */
+	uint32_t near;			/* bit per axis: met in front of
+					 * moved_mm, and not left since */
+	uint32_t asked;			/* ... looked at behind it */
+	int64_t left[INTERP_NAXES];	/* to it, at the first of these */
 	int toward;			/* +1 or -1, along the path */
 	double until_mm;
 	struct interp_cursor scout;
@@ -76,10 +87,13 @@ enum resync_answer {
 /** resync_set() - the axes stand @off from where the path wants them. */
 void resync_set(struct resync *r, const int32_t off[INTERP_NAXES]);
 
+/** resync_begin() - a job begins at @place_mm, where all axes are. */
+void resync_begin(struct resync *r, double place_mm);
+
 /** resync_look() - before anything moves: where do the axes stand? */
 void resync_look(struct cycle *c, const struct io_inputs *in);
 
-/** resync_is_off() - is any axis beside the path? */
+/** resync_is_off() - is any axis beside the path, or on its way back? */
 bool resync_is_off(const struct cycle *c);
 
 /** resync_settle() - without a job: where the axes stand is their place. */
