@@ -7,7 +7,7 @@
  * in each, from a tenth of its time on, what eta.h and the way that was cut say
  * is compared with the truth.  Nothing here depends on how fast the host is.
  *
- * The last four jobs were written when eta.h was done.
+ * The weights of eta.h were chosen with all of these jobs.
  */
 #include "compiling.h"
 #include "eta.h"
@@ -267,7 +267,7 @@ int main(int argc, char **argv)
 		if (sum[i].all > 0)
 			printf("%sWithin 20 %% of the truth, %s: %.1f %% of "
 			       "the samples by way, %.1f %% by time.\n", i ? "" :
-			       "\n", i ? "jobs held out" : "the first eight "
+			       "\n", i ? "the last four jobs" : "the first eight "
 			       "jobs", sum[i].way / sum[i].all,
 			       sum[i].time / sum[i].all);
 	return 0;
