@@ -618,6 +618,33 @@ static void an_axis_blocked_before_its_path_turns_is_met_before_that(void **st)
 	}
 }
 
+/* In each period of its way back it is held once, and then retracts. */
+static void a_way_back_that_was_held_ends_before_a_retract(void **st)
+{
+	bool walked = true;
+
+	(void)st;
+	for (int periods = 1; walked; periods++) {
+		struct world w;
+
+		world_make(&w, false);
+		stop(&w, BY_FOLLOWING);
+		w.axis[INTERP_X].wall = NONE;
+		assert_int_equal(ask(&w, CYCLE_START, 0), ANSWER_DONE);
+		for (int i = 0; i < periods ||
+		     w.cycle.axes.phase == AXES_POWER; i++)
+			period(&w);
+		walked = w.cycle.axes.phase != AXES_FREE;
+		assert_int_equal(ask(&w, CYCLE_HOLD, 0), ANSWER_DONE);
+		stands(&w);
+		assert_int_equal(ask(&w, CYCLE_RETRACT, 0.3), ANSWER_DONE);
+		stands(&w);
+		assert_int_equal(w.axis[INTERP_X].at,
+				 w.cycle.out.target[INTERP_X]);
+		world_free(&w);
+	}
+}
+
 /* Nobody knows what is in the way there; without the job an axis is free. */
 static void an_axis_that_was_moved_far_by_hand_is_not_driven_back(void **st)
 {
@@ -720,6 +747,7 @@ int main(void)
 		cmocka_unit_test(a_fault_ends_a_way_by_command),
 		cmocka_unit_test(every_stop_has_a_way_out_by_every_verb),
 		cmocka_unit_test(an_axis_blocked_before_its_path_turns_is_met_before_that),
+		cmocka_unit_test(a_way_back_that_was_held_ends_before_a_retract),
 		cmocka_unit_test(an_axis_that_was_moved_far_by_hand_is_not_driven_back),
 		cmocka_unit_test(without_power_a_verb_is_refused_and_its_return_starts_nothing),
 	};
