@@ -23,7 +23,7 @@
 #define COUNT(a)	(sizeof(a) / sizeof((a)[0]))
 
 /* A machine of lines that has a gap. */
-#define GAP_LINES	"[machine]\nbackend = gpio\nperiod_us = 200\n" \
+#define LINES_MACHINE	"[machine]\nbackend = gpio\nperiod_us = 200\n" \
 	"[axis.A]\npresent = no\n[axis.B]\npresent = no\n" \
 	"[axis.C]\npresent = no\n[axis.U]\npresent = no\n" \
 	"[axis.V]\npresent = no\n[axis.X]\nv_max_mm_s = 1\n" \

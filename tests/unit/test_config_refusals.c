@@ -261,7 +261,7 @@ static const struct refusal refusals[] = {
 	  6, 0, "generator.silent_ms 149", "at least 150" },
 	{ MODBUS "modbus = /dev/ttyS0\n", 4, 0, "no field has a register",
 	  "peak_a = register N" },
-	{ GAP_LINES "[generator]\ninterface = modbus\nmodbus = /dev/ttyS0\n"
+	{ LINES_MACHINE "[generator]\ninterface = modbus\nmodbus = /dev/ttyS0\n"
 	  "peak_a = register 1\n", 0, 0, "generator.spark reaches nothing",
 	  "[gpio] spark" },
 	{ "[machine]\nbackend = null\n[generator]\nby_hand = on_us amps\n", 4,

@@ -353,7 +353,7 @@ static void each_field_reaches_it_or_is_refused(void **state)
 		struct interp_tech t;
 		char text[1200];
 
-		snprintf(text, sizeof(text), "%s%s", GAP_LINES,
+		snprintf(text, sizeof(text), "%s%s", LINES_MACHINE,
 			 cells[i].more);
 		assert_int_equal(read_text(text, &c, &d), 0);
 		interp_tech_clear(&t);
@@ -372,7 +372,7 @@ static void lines_have_the_code_of_the_value(void **state)
 	struct config_way w;
 
 	(void)state;
-	assert_int_equal(read_text(GAP_LINES "[generator]\n"
+	assert_int_equal(read_text(LINES_MACHINE "[generator]\n"
 		"interface = lines\npeak_a = lines 20 !21 26 weights 3 6 12\n"
 		"on_us = lines 22 23 codes 2 4 8 16\n", &c, &d), 0);
 	config_way(&c, INTERP_TECH_PEAK_A, false, &w);
