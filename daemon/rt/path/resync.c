@@ -123,24 +123,33 @@ void resync_begin(struct resync *r, double place_mm)
 	r->unseen = true;
 }
 
+/* Has any axis moved since it was noted? */
+static bool has_moved(const struct resync *r, const struct io_inputs *in)
+{
+	uint32_t far = 0;
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		far |= (uint32_t)minus(in->actual[i], r->seen[i]) +
+		       NEAR_PULSES > 2 * NEAR_PULSES;
+	return far;
+}
+
 /* Where does the path have each axis while that axis moves? */
 static void note_moves(struct cycle *c, const struct io_inputs *in)
 {
-	const bool beside = escape_is_out(&c->escape);
 	struct resync *r = &c->resync;
+	const double mm = place_mm(c);
+	uint32_t moved = 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		if (!r->unseen && abs(minus(in->actual[i], r->seen[i])) <=
-		    NEAR_PULSES)
+		if (abs(minus(in->actual[i], r->seen[i])) <= NEAR_PULSES)
 			continue;
 		r->seen[i] = in->actual[i];
-		if (r->unseen)
-			continue;
-		r->moved_mm[i] = place_mm(c);
-		r->moved_beside &= ~(1u << i);
-		r->moved_beside |= (uint32_t)beside << i;
+		r->moved_mm[i] = mm;
+		moved |= 1u << i;
 	}
-	r->unseen = false;
+	r->moved_beside = (r->moved_beside & ~moved) |
+			  (escape_is_out(&c->escape) ? moved : 0);
 }
 
 /* A program is compiled from where the machine stands.  Axes without power
@@ -149,7 +158,11 @@ void resync_look(struct cycle *c, const struct io_inputs *in)
 {
 	struct resync *r = &c->resync;
 
-	if (c->loaded && c->comp.begun && !in->starting)
+	if (r->unseen && c->comp.begun && !in->starting) {
+		memcpy(r->seen, in->actual, sizeof(r->seen));
+		r->unseen = false;
+	}
+	if (c->loaded && !r->unseen && has_moved(r, in))
 		note_moves(c, in);
 	if (stands(c, in)) {
 		measure(c, in);
