@@ -20,8 +20,8 @@
  * sure_mm, the last place where all axes were where they were sent.  While an
  * axis was blocked, it did not move, and the path may have turned: so it is
  * looked for from moved_mm on, where it moved last.  An axis that the path only
- * leads away from there is not one that was blocked.  It is taken
- * back by step 2, but not farther than resync_max.
+ * leads away from there is not one that was blocked.  It is taken back by step
+ * 2, but not farther than resync_max.
  *
  * Units: pulses of the drives; mm along the path.  Threads: RT-safe.
  */
