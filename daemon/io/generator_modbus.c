@@ -11,6 +11,7 @@
  * This is a file of its own because edmsim has no libmodbus.
  */
 #include "generator_own.h"
+#include "clocks.h"
 #include "stamped.h"
 #include "thread.h"
 
@@ -110,14 +111,6 @@ static struct stamped words_of(struct generator_modbus *m)
 {
 	return (struct stamped) { m->words, &m->word_next, SLOTS,
 				  sizeof(m->words[0]) };
-}
-
-static int64_t now_ns(void)
-{
-	struct timespec t;
-
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (int64_t)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
 /* -- The thread: one request ----------------------------------------------- */
@@ -422,7 +415,8 @@ static void put_word(struct generator_modbus *m)
 /* One that tells nothing has it after settle_ms. */
 static bool is_settled(const struct generator_modbus *m)
 {
-	return m->tells || now_ns() - m->took_ns >= m->settle_ns;
+	return m->tells ||
+	       clock_ns(CLOCK_MONOTONIC) - m->took_ns >= m->settle_ns;
 }
 
 static void exchange(struct generator_modbus *m)
@@ -435,7 +429,7 @@ static void exchange(struct generator_modbus *m)
 		return;
 	if (w.version != m->took || w.again != m->again) {
 		m->word.refused = NONE;
-		m->took_ns = now_ns();
+		m->took_ns = clock_ns(CLOCK_MONOTONIC);
 	}
 	/* One that has lost something gets all of it. */
 	if (w.again != m->again || (w.version != m->took && m->odd))
@@ -461,15 +455,16 @@ static void sleep_until(struct generator_modbus *m, int64_t from_ns)
 	const int64_t least_ns = m->up ? m->every_ns :
 				 AGAIN_MS * INT64_C(1000000);
 	struct timespec t;
-	int64_t left_ns = from_ns + least_ns - now_ns();
+	int64_t left_ns = from_ns + least_ns - clock_ns(CLOCK_MONOTONIC);
 
 	if (left_ns <= 0)
 		return;
-	clock_gettime(CLOCK_REALTIME, &t);
+	clock_gettime(CLOCK_MONOTONIC, &t);
 	left_ns += t.tv_nsec;
 	t.tv_sec += (time_t)(left_ns / 1000000000);
 	t.tv_nsec = (long)(left_ns % 1000000000);
-	while (sem_timedwait(&m->wake, &t) < 0 && errno == EINTR)
+	while (sem_clockwait(&m->wake, CLOCK_MONOTONIC, &t) < 0 &&
+	       errno == EINTR)
 		;
 	while (sem_trywait(&m->wake) == 0)
 		;
@@ -480,7 +475,7 @@ static void *run(void *arg)
 	struct generator_modbus *m = arg;
 
 	while (!atomic_load(&m->quit)) {
-		const int64_t from_ns = now_ns();
+		const int64_t from_ns = clock_ns(CLOCK_MONOTONIC);
 
 		if (connect_up(m))
 			exchange(m);
