@@ -32,21 +32,21 @@
 
 /* What the cycle asks for. */
 struct wish {
-	uint32_t version, again;	/* again: write all of it anew */
+	_Alignas(uint64_t) uint32_t version;
+	uint32_t again;			/* write all of it anew */
 	uint32_t given;			/* a bit per field of count */
 	uint16_t count[PROCESS_NFIELDS];
 };
 
 /* An exchange that was whole, or how one failed. */
 struct word {
-	uint32_t number;		/* of whole exchanges */
+	_Alignas(uint64_t) uint32_t number;	/* of whole exchanges */
 	uint32_t version, again;	/* that the slave has taken; NONE.  The
 					 * wish that it answers */
 	uint32_t refused;		/* version with a refusal, NONE */
 	uint16_t field, exception;	/* ... of it */
 	int32_t err;			/* no link: errno; 0: it is there */
 	uint16_t count[INTERP_NGENERATOR];
-	uint32_t pad;
 };
 
 struct wish_slot {
@@ -58,9 +58,6 @@ struct word_slot {
 	uint64_t stamp;
 	struct word record;
 };
-
-_Static_assert(sizeof(struct wish) % 8 == 0 && sizeof(struct word) % 8 == 0,
-	       "stamped.h wants whole words");
 
 /* Registers that are written, in the order of their addresses.  Bits that
  * nobody asks for stay as they were read, also those of others. */
@@ -344,7 +341,7 @@ static int read_run(struct generator_modbus *m, const uint8_t *field, int n)
 			m->bank.was_read[at] = true;
 		}
 		m->word.count[field[i]] = (uint16_t)
-			(got[w->id - first->id] >> w->bit &
+			((unsigned int)got[w->id - first->id] >> w->bit &
 			 ((1u << w->bits) - 1));
 		m->odd = is_odd(m, field[i]) || m->odd;
 	}
