@@ -320,7 +320,7 @@ def test_each_pass_has_its_offset_all_the_way_round(cut):
     ("{cut}", "G152 R99", "a tab of 99 mm"),
     ("{cut}", "G152 L2", "G152 L2 without a tab"),
     ("{cut}", "G152 R1 L3", "G152 L3"),
-    ("X15\n", "X15\nM0\n", "more than motions in a contour"),
+    ("X15\n", "X15\nM0\n", "put other words in front of or behind it"),
     ("Y5\nX10\n", "Y5\nX9\n", "is not whole"),
 ])
 def test_what_cannot_be_cut_in_passes_is_refused(old, new, found):

@@ -10,10 +10,11 @@ def test_the_service_says_itself_when_it_is_ready(systemd):
     assert said["active"] == "active/running"
 
 
-def test_it_runs_as_a_user_with_one_thread_in_real_time(systemd):
+def test_it_runs_as_a_user_with_stops_and_the_cycle_in_real_time(systemd):
     said = systemd.words("start")
     assert said["user"] == "edmd"
-    assert said["fifo"] == "1"
+    stops, cycle = said["fifo"].split()
+    assert stops == "edmd-stops=1" and int(cycle.split("=")[1]) > 1, said
 
 
 def test_what_is_shared_is_made_for_the_group_and_nobody_else(systemd):

@@ -11,8 +11,13 @@ is_another() {
 	[ "$now" != 0 ] && [ "$now" != $1 ] && [ "$(unit SubState)" = running ]
 }
 
-# cycle PID - its thread in real time
-cycle() { chrt -a -p $1 | sed -n "s/.*pid \([0-9]*\)'s.*SCHED_FIFO/\1/p"; }
+# fifo PID - "priority thread" of each of its threads in real time, sorted
+fifo() {
+	chrt -a -p $1 |
+		sed -n "s/.*pid \([0-9]*\)'s.*priority: \([1-9].*\)/\2 \1/p" | sort -n
+}
+# cycle PID - the one with the highest priority
+cycle() { fifo $1 | sed -n '$s/.* //p'; }
 {
 echo "pid1 $(cat /proc/1/comm)"
 cp -r root/. /
@@ -28,7 +33,8 @@ echo "active $(unit ActiveState)/$(unit SubState)"
 echo "type $(unit Type)"
 pid=$(unit MainPID)
 echo "user $(ps -o user= -p $pid)"
-echo "fifo $(chrt -a -p $pid | grep -c SCHED_FIFO)"
+echo "fifo $(fifo $pid | while read -r prio tid; do
+	echo "$(cat /proc/$pid/task/$tid/comm)=$prio"; done | paste -s -d' ')"
 systemctl start edmd-jobs.service
 pull sim0 20 up
 } > start 2>&1
