@@ -95,14 +95,20 @@ static void word(char to[TALK_WORD_MAX], const char *from)
 	plain_copy(to, TALK_WORD_MAX, from);
 }
 
+static void text(char to[TALK_TEXT_MAX], const char *from)
+{
+	plain_copy(to, TALK_TEXT_MAX, from);
+}
+
 #define TAKE_WORD(name)		word(s->name, m->name);
+#define TAKE_TEXT(name)		text(s->name, m->name);
 #define TAKE_NUMBER(name)	s->name = m->name;
 
 static void status_take(struct talk_status *s, const edm_status_t *m)
 {
-	STATUS_FIELDS(TAKE_WORD, TAKE_NUMBER, TAKE_NUMBER)
+	STATUS_FIELDS(TAKE_WORD, TAKE_TEXT, TAKE_NUMBER, TAKE_NUMBER)
 	word(s->machine, m->machine);
-	plain_copy(s->faults, sizeof(s->faults), m->faults);
+	text(s->faults, m->faults);
 	memcpy(s->pos_mm, m->pos_mm, sizeof(s->pos_mm));
 	s->utime = m->utime;
 	s->contour_mm = m->contour_mm;

@@ -33,7 +33,7 @@
 #define TALK_NAXES	8
 #define TALK_CHUNK_MAX	32768
 #define TALK_WORD_MAX	64
-#define TALK_FAULTS_MAX	512		/* all of them at once */
+#define TALK_TEXT_MAX	512		/* a text of STATUS */
 #define TALK_SAID_MAX	(KEYFILE_SAID_MAX + 64)
 #define TALK_QUESTIONS	16		/* under way at once */
 #define TALK_TURN_MS	10		/* wait no longer between two turns
@@ -52,6 +52,7 @@ struct talk_options {
 };
 
 #define TALK_WORD(name)		char name[TALK_WORD_MAX];
+#define TALK_TEXT(name)		char name[TALK_TEXT_MAX];
 #define TALK_COUNT(name)	int name;
 #define TALK_NUMBER(name)	double name;
 
@@ -59,8 +60,8 @@ struct talk_options {
 struct talk_status {
 	int64_t utime;
 	char machine[TALK_WORD_MAX];
-	STATUS_FIELDS(TALK_WORD, TALK_COUNT, TALK_NUMBER)
-	char faults[TALK_FAULTS_MAX];	/* all that are latched */
+	STATUS_FIELDS(TALK_WORD, TALK_TEXT, TALK_COUNT, TALK_NUMBER)
+	char faults[TALK_TEXT_MAX];	/* all that are latched */
 	double pos_mm[TALK_NAXES];
 	double contour_mm, contour_predicted_mm;	/* -1: not known */
 };

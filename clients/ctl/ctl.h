@@ -169,7 +169,7 @@ void ctl_left_why(char *to, size_t size, const struct talk_status *s);
 
 /* -- line.c: progress in one line ----------------------------------------- */
 
-#define LINE_MAX_CHARS	320
+#define LINE_MAX_CHARS	(2 * TALK_TEXT_MAX)
 
 struct line {
 	bool tty;

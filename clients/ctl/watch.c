@@ -30,7 +30,7 @@ static void print_json(const struct talk_status *s)
 		json_array_append_new(pos, json_real(s->pos_mm[i]));
 	j = json_pack("{s:I,s:s,s:o}", "utime", (json_int_t)s->utime,
 		      "machine", s->machine, "pos_mm", pos);
-	STATUS_FIELDS(PRINT_WORD, PRINT_COUNT, PRINT_NUMBER)
+	STATUS_FIELDS(PRINT_WORD, PRINT_WORD, PRINT_COUNT, PRINT_NUMBER)
 	if (j && s->contour_mm >= 0) {
 		json_object_set_new(j, "contour_um",
 				    json_real(s->contour_mm * 1e3));

@@ -485,7 +485,7 @@ void jobs_lcm_event(struct jobs_lcm *w, const struct jobs_lcm_event *e)
 void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 {
 	edm_status_t m = {
-		STATUS_FIELDS(SEND_WORD, SEND_COUNT, SEND_NUMBER)
+		STATUS_FIELDS(SEND_WORD, SEND_WORD, SEND_COUNT, SEND_NUMBER)
 		.utime = clock_us(CLOCK_REALTIME),
 		.machine = w->machine,
 		.faults = lent(s->faults),

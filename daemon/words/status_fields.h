@@ -15,7 +15,7 @@
 #ifndef WORDS_STATUS_FIELDS_H
 #define WORDS_STATUS_FIELDS_H
 
-#define STATUS_FIELDS(WORD, COUNT, NUMBER) \
+#define STATUS_FIELDS(WORD, TEXT, COUNT, NUMBER) \
 	WORD(daemon) \
 	WORD(state) \
 	WORD(fault) \
@@ -54,11 +54,12 @@
 	NUMBER(electrode_shift_mm) \
 	NUMBER(electrode_wear_mm) \
 	WORD(stand) \
-	WORD(asks) \
+	TEXT(asks) \
 	NUMBER(stand_s)
 
 #define STATUS_ONE(name)	+ 1
 
-enum { STATUS_NFIELDS = STATUS_FIELDS(STATUS_ONE, STATUS_ONE, STATUS_ONE) };
+enum { STATUS_NFIELDS = \
+	STATUS_FIELDS(STATUS_ONE, STATUS_ONE, STATUS_ONE, STATUS_ONE) };
 
 #endif /* WORDS_STATUS_FIELDS_H */

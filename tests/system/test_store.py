@@ -237,15 +237,19 @@ def test_the_disk_is_read_only_from_the_start(failing):
     c = m.client
     assert c.submit(QUICK_JOB, "before").code == 0
     c.job_where("before", "done")
+    assert c.submit(QUICK_JOB, "kept", hold=True).code == 0
     assert m.end("jobs") == 0
     m.fail(errno.EROFS)
     m.start_jobs()
     degraded(c, WORDS[errno.EROFS])
     assert c.job("before")["state"] == "done"
     assert c.submit(QUICK_JOB, "new").code == 74
+    assert "goes on when there is room" in m.ctl("status").stdout
     m.heal()
     c.status_where(lambda s: s.store == "ok")
     assert c.submit(QUICK_JOB, "new").code == 0
+    c.job_where("kept", "ready")
+    c.ask("start")
     c.job_where("new", "done")
 
 
