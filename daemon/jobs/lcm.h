@@ -83,7 +83,8 @@ struct jobs_lcm_event {
 
 /* The fields of words/status_fields.h; a word of NULL is "". */
 struct jobs_lcm_status {
-	STATUS_FIELDS(JOBS_LCM_WORD, JOBS_LCM_WORD, JOBS_LCM_COUNT, JOBS_LCM_NUMBER)
+	STATUS_FIELDS(JOBS_LCM_WORD, JOBS_LCM_WORD, JOBS_LCM_COUNT,
+		      JOBS_LCM_NUMBER)
 	const char *faults;
 	double pos_mm[JOBS_LCM_NAXES];
 	double contour_mm, contour_predicted_mm;
