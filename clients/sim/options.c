@@ -117,7 +117,7 @@ static const struct cmdline_row rows[] = {
 	{ "emit", "FORMAT", CALL(take_emit), .help =
 	  "3b, 4b or iso: write the job to stdout, do not run it" },
 	{ "strategy", "NAME", CALL(take_strategy), .help =
-	  "simultaneous, point-by-point, centred, dda,\n"
+	  "simultaneous, point-by-point, centred,\n"
 	  "main-direction, min-switch (machine file's)" },
 	{ "tolerance", "PULSES",
 	  NUMBER(tolerance_pulses, 0, INTERP_TOLERANCE_MAX / 1000), .help =

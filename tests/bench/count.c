@@ -42,8 +42,6 @@ static const struct bench_path paths[] = {
 	{ "simultaneous, 2 axes", INTERP_SIMULTANEOUS, 0, 2 },
 	{ "simultaneous, 8 axes", INTERP_SIMULTANEOUS, 0, 8 },
 	{ "simultaneous, arc", INTERP_SIMULTANEOUS, 0, 0 },
-	{ "dda, 2 axes", INTERP_DDA, 0, 2 },
-	{ "dda, arc", INTERP_DDA, 0, 0 },
 	{ "point-by-point, 2 axes", INTERP_POINT_BY_POINT, 0, 2 },
 	{ "point-by-point, arc", INTERP_POINT_BY_POINT, 0, 0 },
 	{ "main-direction, 2 axes", INTERP_MAIN_DIRECTION, 0, 2 },

@@ -42,8 +42,7 @@ static void line_row(const int32_t to[INTERP_NAXES], struct how h,
 {
 	struct interp_build *b = build_as(h);
 	struct line_tally t = { .to = to };
-	const bool together = h.strategy == INTERP_DDA ||
-			      h.strategy == INTERP_SIMULTANEOUS;
+	const bool together = h.strategy == INTERP_SIMULTANEOUS;
 
 	build_line(b, to);
 	program_walk(b, line_point, &t);
@@ -67,7 +66,6 @@ static void line_table(const int32_t to[INTERP_NAXES])
 		  "point-by-point (tree)" },
 		{ { INTERP_CENTRED, 0, INTERP_TREE }, "centred, tree" },
 		{ { INTERP_CENTRED, 0, INTERP_STAR }, "centred, star" },
-		{ { INTERP_DDA, 0, INTERP_STAR }, "dda" },
 		{ { INTERP_SIMULTANEOUS, 0, INTERP_STAR }, "simultaneous" },
 	};
 	static const char *const names[] = {
@@ -152,8 +150,6 @@ static void circle_table(void)
 	       "|---|---|---|---|---|---|\n");
 	for (size_t i = 0; i < COUNT(radii); i++) {
 		circle_row(radii[i], (struct how) { INTERP_POINT_BY_POINT, 0,
-						    INTERP_STAR });
-		circle_row(radii[i], (struct how) { INTERP_DDA, 0,
 						    INTERP_STAR });
 		circle_row(radii[i], (struct how) { INTERP_SIMULTANEOUS, 0,
 						    INTERP_STAR });

@@ -243,7 +243,6 @@ int main(int argc, char **argv)
 		print_closed(INTERP_SIMULTANEOUS, degree);
 		print_closed(INTERP_POINT_BY_POINT, degree);
 		print_closed(INTERP_CENTRED, degree);
-		print_closed(INTERP_DDA, degree);
 		print_closed(INTERP_MAIN_DIRECTION, degree);
 		print_closed(INTERP_MIN_SWITCH, degree);
 	}

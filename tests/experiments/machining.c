@@ -47,7 +47,6 @@ static const struct removal removals[] = {
 	{ "min-switch, mu 2, star", { INTERP_MIN_SWITCH, 2000, INTERP_STAR } },
 	{ "min-switch, mu 2, tube", { INTERP_MIN_SWITCH, 2000, INTERP_TUBE } },
 	{ "min-switch, mu 5, star", { INTERP_MIN_SWITCH, 5000, INTERP_STAR } },
-	{ "dda", { INTERP_DDA, 0, INTERP_STAR } },
 	{ "simultaneous", { INTERP_SIMULTANEOUS, 0, INTERP_STAR } },
 };
 
@@ -156,8 +155,7 @@ static struct fit fit_times(void)
 /* A pulse at a time takes as long as its pulses; else the path counts. */
 static double time_s(const struct row *r, struct how h, struct fit f)
 {
-	const bool together = h.strategy == INTERP_SIMULTANEOUS ||
-			      h.strategy == INTERP_DDA;
+	const bool together = h.strategy == INTERP_SIMULTANEOUS;
 	int32_t to[INTERP_NAXES] = { 0 };
 	double mm;
 

@@ -8,7 +8,7 @@ import pytest
 from edmsim import ROOT, assert_neighbours, places, pulses, report, run
 
 BLADE = ROOT / "examples/blade.ngc"
-STRATEGIES = ["simultaneous", "dda", "centred", "min-switch"]
+STRATEGIES = ["simultaneous", "centred", "min-switch"]
 SIX_AXES = """G21 G90 G17 F{feed}
 G6.2 P5 K0 X0 Y0 Z0 A0 B0 C0
 K0 X10 Y4 Z-1 A10 B5 C12.

@@ -24,7 +24,7 @@ RUNS = int(os.environ.get("EDM_RUNS", 6))
 
 def machine(draw, chain):
     text = ("[machine]\nbackend = sim\nstrategy = %s\n%s" %
-            (draw.choice(["simultaneous", "point-by-point", "dda"]),
+            (draw.choice(["simultaneous", "point-by-point"]),
              draw.choice(["", "fit_um = 50\n"])))
     for a in "XYZABC":
         text += ("[axis.%s]\npulse_mm = %g\ntravel_min_mm = -900\n"

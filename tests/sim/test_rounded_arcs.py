@@ -216,7 +216,7 @@ def test_a_radius_too_short_by_more_than_a_rounding_is_refused(units, decimals,
         assert r.returncode == 65 and b"too small to reach the end" in r.stderr
 
 
-@pytest.mark.parametrize("strategy", ["simultaneous", "point-by-point", "dda",
+@pytest.mark.parametrize("strategy", ["simultaneous", "point-by-point",
                                       "min-switch", "main-direction"])
 @pytest.mark.parametrize("units, decimals", [("G21", 2), ("G21", 3), ("G20", 3)])
 def test_it_is_cut_where_it_was_meant(units, decimals, strategy, tmp_path):
@@ -246,7 +246,7 @@ def pulses_of(rows, axes):
 
 
 @pytest.mark.parametrize("strategy", ["simultaneous", "point-by-point", "centred",
-                                      "main-direction", "dda", "min-switch"])
+                                      "main-direction", "min-switch"])
 @pytest.mark.parametrize("kind", ["centre", "places", "G41", "UV"])
 def test_whether_it_goes_round_is_told_by_what_is_written(kind, strategy, tmp_path):
     """Its ends are less than a pulse apart: in front of its start it goes round,

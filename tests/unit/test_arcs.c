@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_arcs.c - promises of arcs by two accumulators and by stored runs
+ * test_arcs.c - promises of arcs by comparison and by stored runs
  *
  * The arcs are: every start on the lattice with a radius up to 40 pulses, in
  * both directions, with ends all around; whole circles; helices; and arcs of
@@ -19,9 +19,6 @@
 #define RADIUS	40
 #endif
 #define ARCS	SEED_ROUNDS(100000)
-
-/* The rounding of both ends, the ellipse and the two coordinates. */
-#define DDA_STRAYS	1.5
 
 static const struct interp_build_word word = { .line = 1, .feed_mm_s = 1 };
 
@@ -57,8 +54,7 @@ static struct made make_arc(const struct way *w)
 
 static double strays(const struct way *w)
 {
-	return w->s == INTERP_DDA ? DDA_STRAYS :
-	       w->s == INTERP_MIN_SWITCH ? w->milli / 1000.0 : 1;
+	return w->s == INTERP_MIN_SWITCH ? w->milli / 1000.0 : 1;
 }
 
 static void check_points(const struct way *w, const struct points *out)
@@ -133,12 +129,6 @@ static void arcs_of(enum interp_strategy s, uint32_t milli, int ends)
 	}
 }
 
-static void dda_arcs_from_every_start_end_exactly_and_retrace(void **st)
-{
-	(void)st;
-	arcs_of(INTERP_DDA, 0, 8);
-}
-
 static void tube_arcs_from_every_start_end_exactly_and_retrace(void **st)
 {
 	(void)st;
@@ -168,7 +158,8 @@ static void random_arcs_end_exactly_in_range_and_retrace(void **st)
 					uniform(&seed, 0, 6.2832) :
 					uniform(&seed, 0, 2 / r));
 		struct way w = {
-			.s = rnd(&seed) % 3 ? INTERP_MIN_SWITCH : INTERP_DDA,
+			.s = rnd(&seed) % 3 ? INTERP_MIN_SWITCH :
+					     INTERP_POINT_BY_POINT,
 			.milli = 1000 + (uint32_t)(rnd(&seed) % 9000),
 			.x0 = (int)lround(r * cos(t0)),
 			.y0 = (int)lround(r * sin(t0)),
@@ -242,7 +233,7 @@ static void random_programs_with_helices_are_walked_about(void **st)
 	for (uint64_t seed = 1; seed <= 300; seed++) {
 		uint64_t s = seed;
 		const enum interp_strategy strategy =
-			INTERP_CENTRED + (int)(seed % 4);
+			INTERP_CENTRED + (int)(seed % 3);
 		struct made m = random_program(strategy, &s);
 		struct points out = walk_all(&m, 1e9);
 		struct points fine = walk_all(&m, 0.0007);
@@ -267,7 +258,7 @@ static void a_steep_helix_keeps_its_axes_in_step(void **st)
 	(void)st;
 	for (int i = 0; i < 2; i++) {
 		struct interp_build *b = build_with(i ? INTERP_MIN_SWITCH :
-						    INTERP_DDA, 2000);
+						    INTERP_CENTRED, 2000);
 		const double start[INTERP_NAXES] = { 0.02 };
 		const double end[INTERP_NAXES] = { -0.02, 0, 5 };
 		struct made m;
@@ -300,7 +291,7 @@ static double plain_deviation_mm(bool circle, double x, double y)
 
 static void points_lie_as_far_from_lines_and_circles_as_they_do(void **st)
 {
-	const struct way w = { .s = INTERP_DDA, .x0 = 3000, .y0 = 1000,
+	const struct way w = { .s = INTERP_CENTRED, .x0 = 3000, .y0 = 1000,
 			       .x1 = 3000, .y1 = 1000 };
 	struct made m = make_arc(&w);
 	uint64_t seed = 1;
@@ -352,7 +343,7 @@ static void a_damaged_block_never_leads_astray(void **st)
 	(void)st;
 	for (uint64_t seed = 1; seed <= 4000; seed++) {
 		uint64_t s = seed;
-		struct made m = random_program(INTERP_CENTRED + (int)(seed % 4),
+		struct made m = random_program(INTERP_CENTRED + (int)(seed % 3),
 					       &s);
 		struct interp_program_head *h = m.block;
 		const uint32_t nruns = h->nruns;
@@ -426,7 +417,6 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(an_axis_beside_a_circle_goes_evenly),
-		cmocka_unit_test(dda_arcs_from_every_start_end_exactly_and_retrace),
 		cmocka_unit_test(tube_arcs_from_every_start_end_exactly_and_retrace),
 		cmocka_unit_test(arcs_of_the_line_rules_are_point_by_point),
 		cmocka_unit_test(random_arcs_end_exactly_in_range_and_retrace),

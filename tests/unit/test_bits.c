@@ -213,7 +213,6 @@ static double promised(const struct job *j)
 
 	switch (j->o.strategy) {
 	case INTERP_SIMULTANEOUS:
-	case INTERP_DDA:
 		return (c + s) / 2;
 	case INTERP_POINT_BY_POINT:
 		return c + (c + s) / 2;

@@ -24,7 +24,6 @@ static const struct text texts[] = {
 	  true },
 	{ INTERP_POINT_BY_POINT, "G2 I0.1", true },
 	{ INTERP_CENTRED, "G2 I0.1", true },
-	{ INTERP_DDA, "G2 I0.1", true },
 	{ INTERP_MIN_SWITCH, "G2 I0.1", true },
 	{ INTERP_MIN_SWITCH, "G2 I0.1 Z0.1\nG1 Z-0.1", true },
 	{ INTERP_MIN_SWITCH, "G1 X0.301 Y0.217 Z0.119\nX-0.301 Y-0.217 Z-0.119",
@@ -32,7 +31,6 @@ static const struct text texts[] = {
 	/* These are as quick as lines. */
 	{ INTERP_SIMULTANEOUS, "G2 I0.1", false },
 	{ INTERP_POINT_BY_POINT, "G1 X0.3 Y0.1\nX-0.3 Y-0.1", false },
-	{ INTERP_DDA, "G1 X0.3 Y0.1\nX-0.3 Y-0.1", false },
 };
 
 struct try {

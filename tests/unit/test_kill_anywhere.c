@@ -44,7 +44,7 @@ static const struct job jobs[] = {
 	  INTERP_POINT_BY_POINT, false },
 	/* A cone around a corner whose point stands, there and back. */
 	{ "F300\nH1=0.1\nG51 A2.\nG41 D1\nG1 X1\nG1 Y1\nX2\nG40 G50 G1 X2.5\n"
-	  "M5\nG1 X0 Y0\nM2\n", INTERP_DDA, true },
+	  "M5\nG1 X0 Y0\nM2\n", INTERP_CENTRED, true },
 	/* Contacts, and what is cut from them. */
 	{ "F300\nG80 Z-\nG92 Z0\nG90 G0 Z0.3\nM3\nG1 Z-0.2\nG0 Z0.3\n"
 	  "G0 X0.5\nG1 Z-0.2\nM5\nG1 Z0.3\nM2\n",

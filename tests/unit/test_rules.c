@@ -339,7 +339,7 @@ static void main_direction_changes_axis_as_often_as_point_by_point(void **st)
 /* -- Through the builder and the cursor ----------------------------------- */
 
 static const enum interp_strategy all[] = {
-	INTERP_SIMULTANEOUS, INTERP_POINT_BY_POINT, INTERP_CENTRED, INTERP_DDA,
+	INTERP_SIMULTANEOUS, INTERP_POINT_BY_POINT, INTERP_CENTRED,
 	INTERP_MAIN_DIRECTION, INTERP_MIN_SWITCH,
 };
 

@@ -86,10 +86,7 @@ static bool same_inside(const struct interp_cursor *a,
 	bool same = same_circle(&a->circle, &b->circle) &&
 		    a->circle_at == b->circle_at &&
 		    same_side(&a->side[0], &b->side[0]) &&
-		    same_side(&a->side[1], &b->side[1]) &&
-		    a->rotor.x == b->rotor.x && a->rotor.y == b->rotor.y &&
-		    a->rotor.rest_x == b->rotor.rest_x &&
-		    a->rotor.rest_y == b->rotor.rest_y;
+		    same_side(&a->side[1], &b->side[1]);
 
 	for (int i = 0; i < INTERP_NAXES; i++)
 		same &= a->dda[i].err == b->dda[i].err &&

@@ -440,7 +440,7 @@ static double most_more(enum interp_strategy strategy, const double k[2][3],
 static void each_axis_of_a_pair_goes_evenly(void **st)
 {
 	static const enum interp_strategy one_at_a_time[] = {
-		INTERP_POINT_BY_POINT, INTERP_DDA, INTERP_CENTRED,
+		INTERP_POINT_BY_POINT, INTERP_CENTRED,
 	};
 	static const double pairs[][2][3] = {
 		{ { 0, 40, 30 }, { 0, 9000, 2000 } },
@@ -453,14 +453,14 @@ static void each_axis_of_a_pair_goes_evenly(void **st)
 	};
 
 	(void)st;
-	for (size_t i = 0; i < 3 * sizeof(pairs) / sizeof(pairs[0]); i++) {
+	for (size_t i = 0; i < 2 * sizeof(pairs) / sizeof(pairs[0]); i++) {
 		for (int steps = 50; steps <= 5000; steps *= 100) {
-			const double more = most_more(one_at_a_time[i % 3],
-						      pairs[i / 3], steps);
+			const double more = most_more(one_at_a_time[i % 2],
+						      pairs[i / 2], steps);
 
 			if (more > 3)
 				fail_msg("strategy %zu, pair %zu, %d steps: "
-					 "%g pulses more", i % 3, i / 3, steps,
+					 "%g pulses more", i % 2, i / 2, steps,
 					 more);
 		}
 	}

@@ -634,7 +634,7 @@ static inline int walk_together(struct interp_build *b,
 				const struct build_measure *m,
 				struct walked *ret, struct interp_diag *diag)
 {
-	const uint64_t ticks = build_rule_ticks(b->how, m->longest);
+	const int64_t ticks = (m->longest + INTERP_SUB - 1) >> INTERP_SUB_BITS;
 
 	if (ticks > INTERP_PULSES_MAX)
 		return refuse_long(diag, m->length_mm);
@@ -686,9 +686,8 @@ int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 		build_stand_at(b, end_mm, to);
 		return 0;
 	}
-	err = build_rule_one_by_one(b->how) ?
-	      walk_one_by_one(b, to, m, &walked, diag) :
-	      walk_together(b, &m, &walked, diag);
+	err = b->how->at_once ? walk_together(b, &m, &walked, diag) :
+	      walk_one_by_one(b, to, m, &walked, diag);
 	if (err == 0 && w->ends)
 		err = sensed_begin(b, m.moved, w, diag);
 	if (err < 0)

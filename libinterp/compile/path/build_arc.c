@@ -240,10 +240,6 @@ void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 {
 	struct interp_circle k;
 
-	if (strategy(p)->accumulates) {
-		dda_marks(arc, p->runs.start, runs);
-		return;
-	}
 	if (arc->nruns == 0) {
 		circle_keep_places(arc, p->runs.start, p->runs.end, runs);
 		return;
@@ -258,8 +254,7 @@ void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 
 uint64_t build_arc_kept(const struct build_arc *p)
 {
-	return strategy(p)->accumulates ? p->arc.nruns :
-	       p->arc.nruns ? circle_kept(p->arc.nruns) :
+	return p->arc.nruns ? circle_kept(p->arc.nruns) :
 	       (uint64_t)circle_places(&p->arc) * CIRCLE_PLACE;
 }
 
@@ -270,29 +265,14 @@ static bool is_tiny(const int64_t start[2])
 	return start[0] * start[0] + start[1] * start[1] == 1;
 }
 
-static bool measure(struct build_arc *p, const int64_t start[2],
-		    const int64_t end[2])
-{
-	const int64_t others = (p->way.longest_sub + INTERP_SUB - 1) >>
-			       INTERP_SUB_BITS;
-
-	return strategy(p)->accumulates && !is_tiny(start) ?
-	       dda_measure(&p->arc, start, end, others) :
-	       circle_measure(&p->arc, start, end);
-}
-
-/* Pulses of the other axes come one at a time, except with dda. */
+/* Pulses of the other axes come one at a time. */
 static int count_ticks(struct build_arc *p, struct interp_diag *diag)
 {
-	uint64_t ticks = p->arc.circle_ticks;
-	int err;
+	const uint64_t ticks = p->arc.circle_ticks + build_rule_pulses(&p->way);
+	const int err = build_rule_check(p->o, &p->way, diag);
 
-	if (!strategy(p)->accumulates) {
-		err = build_rule_check(p->o, &p->way, diag);
-		if (err < 0)
-			return err;
-		ticks += build_rule_pulses(&p->way);
-	}
+	if (err < 0)
+		return err;
 	if (ticks > INTERP_PULSES_MAX)
 		return refuse_ticks(diag);
 	p->ticks = (uint32_t)ticks;
@@ -332,20 +312,14 @@ static int ticks_of_pulses(struct build_arc *p, struct interp_diag *diag)
 	if (err < 0 || p->walks->again.counts)
 		return err;
 	arc_ends(p, start, end);
-	/* There is nothing to go around, it goes nowhere, or the helix of a dda
-	 * has no way around it. */
+	/* There is nothing to go around, or it goes nowhere. */
 	if ((start[0] == 0 && start[1] == 0) ||
 	    (start[0] == end[0] && start[1] == end[1] &&
 	     fabs(arc->sweep) < ANGLE_TURN / 2)) {
 		p->straight = true;
 		return 0;
 	}
-	if (is_tiny(start) && strategy(p)->accumulates &&
-	    p->way.longest_sub > 0) {
-		p->straight = true;
-		return 0;
-	}
-	if (!measure(p, start, end)) {
+	if (!circle_measure(&p->arc, start, end)) {
 		/* An arc of a pulse or two may have no way around. */
 		p->straight = fabs(arc->sweep) * arc->r_mm < 4 * pulse;
 		return p->straight ? 0 : refuse_ticks(diag);

@@ -9,9 +9,7 @@
  *
  * In a tick an axis makes a pulse at most.  So where it is n pulses from the
  * end of its travel, the next n ticks stay inside, and are left out.  A circle
- * of radius R that touches the end takes about the root of R looks.  Only
- * accumulators have no closed form: they are turned on, which is as long as the
- * arc, but they were turned to measure it, too.
+ * of radius R that touches the end takes about the root of R looks.
  */
 #include "path/build_edge.h"
 #include "path/builder.h"
@@ -118,29 +116,7 @@ static int look_along_sides(const struct look *l)
 	return err;
 }
 
-/* -- Accumulators, and all axes at once ------------------------------------ */
-
-/* The tail leads from where they stop to the end of the arc. */
-static int look_along_rotor(const struct look *l)
-{
-	const struct interp_arc *arc = &l->c.arc;
-	struct interp_rotor k = l->c.rotor;
-	const int64_t a = l->c.pos[arc->axis_a] - k.x;
-	const int64_t b = l->c.pos[arc->axis_b] - k.y;
-	uint32_t tick = 0, room = 1;
-
-	while (tick < arc->tail) {
-		const uint32_t n = least(room, arc->tail - tick);
-
-		tick += n;
-		if (!dda_turn(&k, n))
-			return -EBADMSG;
-		room = try_plane(l, arc, a + k.x, b + k.y);
-		if (!room)
-			return -EINVAL;
-	}
-	return 0;
-}
+/* -- All axes at once ------------------------------------------------------ */
 
 static bool go_on(struct interp_cursor *c, uint32_t ticks)
 {
@@ -193,7 +169,7 @@ static int look_along(struct look *l)
 		return look_along_circle(l, &l->c.arc, &l->c.circle);
 	if (w == &pulse_pair)
 		return look_along_sides(l);
-	return w == &pulse_dda_arc ? look_along_rotor(l) : look_at_once(l);
+	return look_at_once(l);
 }
 
 /* -- A program that has only this ------------------------------------------ */

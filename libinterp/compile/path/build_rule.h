@@ -16,15 +16,6 @@ struct build_way {
 					 * columns, in which they are coupled */
 };
 
-/**
- * build_rule_one_by_one() - do the axes move one at a time, so that it matters
- * how far each goes?
- */
-static inline bool build_rule_one_by_one(const struct pulse_strategy *how)
-{
-	return !how->at_once && !how->accumulates;
-}
-
 /** build_rule_of() - strategy, coupling and tolerance of a way. */
 struct couple_rule build_rule_of(const struct interp_build_options *o,
 				 const struct build_way *w);
@@ -37,20 +28,6 @@ uint32_t build_rule_inputs(const struct build_way *w, struct couple_input *in);
 
 /** build_rule_pulses() - the ticks of a line, one axis at a time; also more. */
 uint64_t build_rule_pulses(const struct build_way *w);
-
-/**
- * build_rule_ticks() - the ticks of a line whose axes move together; @longest:
- * the way of its longest axis, subpulses.  More than INTERP_PULSES_MAX: too
- * many.
- */
-static inline uint64_t build_rule_ticks(const struct pulse_strategy *how,
-					int64_t longest)
-{
-	longest = (longest + INTERP_SUB - 1) >> INTERP_SUB_BITS;
-	if (how->at_once || longest > INTERP_PULSES_MAX)
-		return (uint64_t)longest;
-	return (uint64_t)pulse_dda_ticks(longest);
-}
 
 /** build_rule_check() - 0, or -EINVAL with @diag's found and wanted. */
 int build_rule_check(const struct interp_build_options *o,

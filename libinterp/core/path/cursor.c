@@ -48,12 +48,11 @@ static const struct interp_walk *pulse_of_line(const struct interp_cursor *c)
 	       axes_moving(c) < 3 ? s->line : s->flat;
 }
 
-/* The arc of a dda that is too small for accumulators has no shift. */
 static const struct interp_walk *pulse_of_arc(const struct interp_cursor *c)
 {
 	const struct pulse_strategy *s = pulse_strategy(c->p.head->strategy);
 
-	if (s->arc && (!s->accumulates || c->arc.shift > 0))
+	if (s->arc)
 		return s->arc;
 	return c->seg.ticks == c->arc.circle_ticks ? &pulse_circle :
 						     &pulse_helix;

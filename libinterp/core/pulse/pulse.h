@@ -48,10 +48,6 @@ struct interp_walk {
 extern const struct interp_walk pulse_line;
 /* Arcs, all axes at once: arc.c. */
 extern const struct interp_walk pulse_arc;
-/* Lines by accumulators, and arcs by two accumulators that feed each other:
- * dda.c. */
-extern const struct interp_walk pulse_dda_line;
-extern const struct interp_walk pulse_dda_arc;
 /* Lines of three or more axes as a star or a tube: flat.c. */
 extern const struct interp_walk pulse_flat;
 /* Lines and helices, one axis at a time: tree.c. */
@@ -243,12 +239,6 @@ bool pulse_bits(struct interp_cursor *c, uint32_t npairs);
 /** pulse_rule() - strategy, coupling and tolerance of the program. */
 struct couple_rule pulse_rule(const struct interp_cursor *c);
 
-/**
- * pulse_dda_ticks() - the ticks of a line of @longest pulses: a power of two,
- * or 0.
- */
-int64_t pulse_dda_ticks(int64_t longest);
-
 /** pulse_arc_near() - are centre and radius INTERP_PULSES_MAX at most?  Others
  *  are walked nowhere. */
 bool pulse_arc_near(const struct interp_arc *arc, double a_pulses_mm,
@@ -367,27 +357,6 @@ bool pulse_circle_places(const struct interp_cursor *c,
 			 const struct interp_arc *arc, struct interp_circle *k);
 /** circle_smallest_milli() - @milli, or more if the circle needs more. */
 uint32_t circle_smallest_milli(int64_t r2, uint32_t milli);
-
-/**
- * dda_measure() - the same for a pair of accumulators: ticks, tail, rests, and
- * the number of marks; at least @others ticks.
- *
- * Return: false if it has too many ticks.  dda.c.
- */
-bool dda_measure(struct interp_arc *arc, const int64_t start[2],
-		 const int64_t end[2], int64_t others);
-/**
- * dda_marks() - what the program keeps of them: arc->nruns numbers to @ret, at
- * which a seek begins.
- */
-void dda_marks(const struct interp_arc *arc, const int64_t start[2],
-	       int32_t *ret);
-/**
- * dda_turn() - make @ticks of a pair of accumulators.
- *
- * Return: false if they leave their range.
- */
-bool dda_turn(struct interp_rotor *k, uint32_t ticks);
 
 /** pulse_circle_node() - start or end of c->arc's plane from its centre. */
 void pulse_circle_node(const struct interp_cursor *c, bool at_end,

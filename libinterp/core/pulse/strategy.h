@@ -34,9 +34,6 @@ struct pulse_strategy {
 					 * pulse */
 
 	bool at_once;			/* all axes may pulse in one tick */
-	bool accumulates;		/* has an accumulator for each axis,
-					 * which may pulse in one tick as
-					 * well */
 	bool takes_tolerance;		/* mu says how far it may be off */
 	bool couples;			/* the coupling of the axes can be
 					 * chosen */
@@ -56,7 +53,7 @@ static inline uint32_t pulse_curve_turns(uint32_t strategy, uint32_t naxes)
 {
 	const struct pulse_strategy *s = pulse_strategy(strategy);
 
-	return s->at_once || s->accumulates ? 1 : naxes;
+	return s->at_once ? 1 : naxes;
 }
 
 #endif /* PULSE_STRATEGY_H */

@@ -89,14 +89,6 @@ struct interp_circle {
 	uint8_t run_first;		/* axis of run 0: 0 a, 1 b */
 };
 
-/* A circle by two accumulators: see pulse/dda.c. */
-struct interp_rotor {
-	int64_t x, y;			/* from the centre, pulses */
-	int64_t rest_x, rest_y;		/* accumulators, 0 ... 2^shift - 1 */
-	uint32_t shift;
-	int8_t ccw;			/* +1 counter-clockwise, -1 clockwise */
-};
-
 /* One contour of a pair: see pulse/sides.c. */
 struct interp_side {
 	struct interp_circle circle;	/* if it is an arc */
@@ -173,7 +165,6 @@ struct interp_cursor {
 	uint16_t pulse_back[INTERP_NAXES];
 	struct interp_circle circle;
 	struct interp_side side[2];
-	struct interp_rotor rotor;
 	struct interp_curve_walk curve;
 	int64_t others, circle_at;	/* a helix's other pulses; measure of
 					 * its circle alone */
@@ -200,9 +191,9 @@ int interp_cursor_init(struct interp_cursor *c, const struct interp_program *p);
 /**
  * interp_cursor_seek() - stand at tick @tick of segment @index.
  *
- * By dda an arc takes as long as the way to its nearer end, a circle by one
- * axis at a time as long as its radius, and stored bits and runs are counted:
- * startup only.  Everything else takes no longer if @tick is large.
+ * A circle by one axis at a time takes as long as its radius, and stored bits
+ * and runs are counted: startup only.  Everything else takes no longer if @tick
+ * is large.
  * Return: 0, -ERANGE if there is no such place, -EBADMSG.
  */
 int interp_cursor_seek(struct interp_cursor *c, uint32_t index, uint32_t tick);

@@ -52,12 +52,12 @@
 #define INTERP_FAR_BESIDE	1e4
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	13
+#define INTERP_PROGRAM_VERSION	14
 
 /*
  * How three and more axes make a line when they move one at a time.
  * Point-by-point is always a tree.  With two axes there is no difference.
- * Simultaneous and dda do not need it.
+ * Simultaneous does not need it.
  */
 enum interp_coupling {
 	INTERP_STAR,			/* each axis against the longest one */
@@ -189,7 +189,7 @@ struct interp_arc {
 					 * start */
 	double sweep;			/* radian, signed; + is
 					 * counter-clockwise */
-	/* Not for simultaneous; see pulse/circle.c and pulse/dda.c: */
+	/* Not for simultaneous; see pulse/circle.c: */
 	int64_t measure;		/* of the whole circle: area and
 					 * ticks */
 	uint32_t circle_ticks;		/* pulses in the plane */
@@ -199,14 +199,10 @@ struct interp_arc {
 					 * end */
 	uint32_t crossings;		/* of the axes through the centre */
 	uint32_t run_at, nruns;		/* runs[run_at ...]: of min-switch its
-					 * runs; else what a seek begins at, of
-					 * which nruns tells that of dda */
-	int64_t rest_a, rest_b;		/* dda: accumulators before the tail */
-	uint32_t shift;			/* dda: their modulus is 2^shift */
+					 * runs; else what a seek begins at */
 	uint8_t axis_a, axis_b;		/* enum interp_axis */
 	uint8_t run_first;		/* axis of the first run: 0 a, 1 b */
 	uint8_t pad;
-	uint32_t pad2;
 };
 
 /*
@@ -326,7 +322,7 @@ struct interp_program_head {
 	uint32_t perpendicular;		/* 1: mu is square to the line; 0: along
 					 * the secondary axis */
 	uint32_t coupling;		/* enum interp_coupling */
-	uint32_t nruns;			/* of arcs by min-switch and dda */
+	uint32_t nruns;			/* of arcs, one axis at a time */
 	uint64_t runs_at;		/* bytes from the head */
 	double length_mm;
 	uint64_t ncouples, couples_at;
@@ -351,8 +347,8 @@ struct interp_program {
 	const struct interp_arc *arcs;
 	const struct interp_cond *conds;
 	const struct interp_escape *escapes;
-	const int32_t *runs;		/* pulses in a row, signed; or four
-					 * numbers of a dda's accumulators */
+	const int32_t *runs;		/* pulses in a row, signed; or
+					 * what a seek begins at */
 	const struct interp_couple *couples;
 	const uint64_t *bits;
 	const struct interp_curve *curves;

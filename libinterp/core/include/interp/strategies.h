@@ -23,10 +23,6 @@
 	X(CENTRED, .name = "centred",					\
 	  .line = &pulse_tree, .flat = &pulse_flat, .pair = &pulse_pair, \
 	  .set = pair_set_centred, .couples = true)			\
-	/* An accumulator for each axis. */				\
-	X(DDA, .name = "dda",						\
-	  .line = &pulse_dda_line, .flat = &pulse_dda_line,		\
-	  .arc = &pulse_dda_arc, .pair = &pulse_pair, .accumulates = true) \
 	/* One axis at a time; the main axis goes as far as mu allows. */ \
 	X(MAIN_DIRECTION, .name = "main-direction",			\
 	  .line = &pulse_tree, .flat = &pulse_flat, .pair = &pulse_pair, \
