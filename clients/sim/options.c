@@ -126,8 +126,8 @@ static const struct cmdline_row rows[] = {
 	{ "perpendicular", NULL, FLAG(perpendicular), .help =
 	  "measure the tolerance square to the path instead" },
 	{ "coupling", "NAME", CALL(take_coupling), .help =
-	  "of three or more axes: star, tree, tube (machine\n"
-	  "file's, star)" },
+	  "of three or more axes: star, tree (machine file's,\n"
+	  "star)" },
 	{ "fit", "UM", NUMBER(fit_um, 0, 1000), .help =
 	  "join cut lines into curves that are this near to\n"
 	  "them (machine file's, 0: do not join)" },

@@ -49,7 +49,7 @@ static const struct bench_path paths[] = {
 	{ "min-switch, 2 axes", INTERP_MIN_SWITCH, 0, 2 },
 	{ "min-switch, arc", INTERP_MIN_SWITCH, 0, 0 },
 	{ "min-switch, tree of 8", INTERP_MIN_SWITCH, INTERP_TREE, 8 },
-	{ "min-switch, tube of 8", INTERP_MIN_SWITCH, INTERP_TUBE, 8 },
+	{ "min-switch, star of 8", INTERP_MIN_SWITCH, INTERP_STAR, 8 },
 	{ "point-by-point, XYUV", INTERP_POINT_BY_POINT, 0, BENCH_PAIR },
 };
 

@@ -34,10 +34,8 @@ static const struct bench_path paths[] = {
 	{ "min-switch-2",	INTERP_MIN_SWITCH,	0, 2 },
 	{ "min-switch-3-star",	INTERP_MIN_SWITCH,	INTERP_STAR, 3 },
 	{ "min-switch-3-tree",	INTERP_MIN_SWITCH,	INTERP_TREE, 3 },
-	{ "min-switch-3-tube",	INTERP_MIN_SWITCH,	INTERP_TUBE, 3 },
 	{ "min-switch-8-star",	INTERP_MIN_SWITCH,	INTERP_STAR, 8 },
 	{ "min-switch-8-tree",	INTERP_MIN_SWITCH,	INTERP_TREE, 8 },
-	{ "min-switch-8-tube",	INTERP_MIN_SWITCH,	INTERP_TUBE, 8 },
 	{ "min-switch-arc",	INTERP_MIN_SWITCH,	0, 0 },
 };
 

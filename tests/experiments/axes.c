@@ -71,7 +71,6 @@ static void line_table(const int32_t to[INTERP_NAXES])
 	static const char *const names[] = {
 		[INTERP_STAR] = "min-switch, star",
 		[INTERP_TREE] = "min-switch, tree",
-		[INTERP_TUBE] = "min-switch, tube",
 	};
 
 	printf("\n### Totals");
@@ -171,8 +170,8 @@ int main(void)
 	       "`libinterp/core/pulse/couple.h`. *Share* is how far\nan axis "
 	       "is from its part of the pulses that were given so far; a tree "
 	       "keeps\nthis small. *Against the longest axis* is how far it is "
-	       "from its part of the\npulses of the longest axis; star and "
-	       "tube keep this small. A change of axis is\ncounted where none "
+	       "from its part of the\npulses of the longest axis; a star keeps "
+	       "this small. A change of axis is\ncounted where none "
 	       "of the axes that have just moved moves again.\n");
 	for (size_t i = 0; i < COUNT(lines); i++)
 		line_table(lines[i]);

@@ -45,7 +45,6 @@ static const struct removal removals[] = {
 	  { INTERP_MIN_SWITCH, 1500, INTERP_STAR } },
 	{ "min-switch, mu 2, tree", { INTERP_MIN_SWITCH, 2000, INTERP_TREE } },
 	{ "min-switch, mu 2, star", { INTERP_MIN_SWITCH, 2000, INTERP_STAR } },
-	{ "min-switch, mu 2, tube", { INTERP_MIN_SWITCH, 2000, INTERP_TUBE } },
 	{ "min-switch, mu 5, star", { INTERP_MIN_SWITCH, 5000, INTERP_STAR } },
 	{ "simultaneous", { INTERP_SIMULTANEOUS, 0, INTERP_STAR } },
 };

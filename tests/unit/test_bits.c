@@ -181,7 +181,8 @@ static void more_axes_go_back_as_they_came(void **state)
 		struct points p;
 		struct made m;
 
-		j.o.coupling = (enum interp_coupling)(rnd(&seed) % 3);
+		j.o.coupling = (enum interp_coupling)(rnd(&seed) %
+						      INTERP_NCOUPLINGS);
 		j.o.tolerance_milli += 2000;
 		m = job_make(&j);
 		p = walk_all(&m, 1e9);

@@ -45,9 +45,7 @@ static struct move random_move(uint64_t *seed)
 	};
 	uint32_t left = INTERP_NAXES, need = m.axes;
 
-	m.o.coupling = m.o.strategy == INTERP_MIN_SWITCH ?
-		       (enum interp_coupling)(rnd(seed) % 3) :
-		       (enum interp_coupling)(rnd(seed) % 2);
+	m.o.coupling = (enum interp_coupling)(rnd(seed) % INTERP_NCOUPLINGS);
 	for (int i = 0; i < INTERP_NAXES; i++, left--) {
 		if (rnd(seed) % left >= need)
 			continue;
@@ -70,7 +68,7 @@ static struct made make_move(const struct move *m)
 	return finish(b);
 }
 
-/* -- Star and tube: each axis against the longest ------------------------- */
+/* -- Star: each axis against the longest ------------------------- */
 
 static struct pair_tube axis_tube_of(const struct move *m)
 {
@@ -232,12 +230,6 @@ static void couplings_change_axis_as_often_as_is_known(void **st)
 	assert_int_equal(changes_of(ramp, INTERP_STAR, 2000), 10002);
 	assert_int_equal(changes_of(six, INTERP_STAR, 5000), 2317);
 	assert_int_equal(changes_of(six, INTERP_TREE, 5000), 2759);
-	/* Shared stops save what they are for. */
-	assert_true(changes_of(six, INTERP_TUBE, 5000) < 2317 * 9 / 10);
-	assert_true(changes_of(six, INTERP_TUBE, 2000) <
-		    changes_of(six, INTERP_STAR, 2000));
-	/* Two axes that go together do so in each. */
-	assert_int_equal(changes_of(ramp, INTERP_TUBE, 2000), 10002);
 }
 
 /* -- Refusals ------------------------------------------------------------- */
@@ -266,45 +258,11 @@ static void what_a_coupling_cannot_do_is_refused(void **st)
 	struct interp_diag d = { .found = "" };
 
 	(void)st;
-	assert_int_equal(try_line(INTERP_CENTRED, INTERP_TUBE, 0, &d),
-			 -EINVAL);
-	assert_string_equal(d.found, "coupling tube with strategy centred");
-	assert_int_equal(try_line(INTERP_MIN_SWITCH, INTERP_TUBE, 900, &d),
-			 -EINVAL);
-	assert_non_null(strstr(d.wanted, "pulses or more"));
-	assert_int_equal(try_line(INTERP_MIN_SWITCH, INTERP_TUBE, 1000, &d), 0);
 	assert_int_equal(try_line(INTERP_MIN_SWITCH, INTERP_STAR, 1000, &d), 0);
 	assert_int_equal(try_line(INTERP_MIN_SWITCH, INTERP_STAR, 900, &d),
 			 -EINVAL);
+	assert_non_null(strstr(d.wanted, "pulses or more"));
 	assert_int_equal(try_line(INTERP_MIN_SWITCH, INTERP_TREE, 1000, &d), 0);
-}
-
-static void shared_stops_are_found_and_save_changes(void **st)
-{
-	uint64_t seed = 31;
-	double tube = 0, star = 0;
-	int shared = 0, lines = 0;
-
-	(void)st;
-	print_message("    seed %llu\n", (unsigned long long)seed);
-	for (; lines < 300; lines++) {
-		int32_t d[INTERP_NAXES] = { 0 };
-		const int n = 4 + (int)(rnd(&seed) % 5);
-		const uint32_t milli = 1500 + (uint32_t)(rnd(&seed) % 10000);
-		size_t t, s;
-
-		for (int i = 0; i < n; i++)
-			d[i] = 1 + (int32_t)(rnd(&seed) % 5000);
-		t = changes_of(d, INTERP_TUBE, milli);
-		s = changes_of(d, INTERP_STAR, milli);
-		shared += t != s;
-		tube += (double)t;
-		star += (double)s;
-	}
-	print_message("    %d of %d lines share stops: %.3f of a star's "
-		      "changes\n", shared, lines, tube / star);
-	assert_true(shared > lines * 9 / 10);
-	assert_true(tube < 0.95 * star);
 }
 
 int main(void)
@@ -313,7 +271,6 @@ int main(void)
 		cmocka_unit_test(random_moves_end_exactly_in_range_and_retrace),
 		cmocka_unit_test(couplings_change_axis_as_often_as_is_known),
 		cmocka_unit_test(what_a_coupling_cannot_do_is_refused),
-		cmocka_unit_test(shared_stops_are_found_and_save_changes),
 	};
 
 	return cmocka_run_group_tests_name("interp/couple", tests, NULL, NULL);

@@ -59,9 +59,9 @@ static int runs(void)
 static bool same_pair(const struct interp_pair *a, const struct interp_pair *b)
 {
 	return a->m == b->m && a->s == b->s && a->dev == b->dev &&
-	       (!a->bursts || (a->burst == b->burst && a->prior == b->prior &&
-			       a->from == b->from && a->to == b->to &&
-			       a->due == b->due && a->done == b->done));
+	       (!a->bursts ||
+		(a->burst == b->burst && a->from == b->from &&
+		 a->to == b->to && a->due == b->due && a->done == b->done));
 }
 
 static bool same_circle(const struct interp_circle *a,
@@ -189,9 +189,6 @@ static void choose(struct job *j, const struct interp_machine *m)
 				   1000 + (uint32_t)(rnd(&seed) % 5000),
 		.perpendicular = rnd(&seed) % 2,
 	};
-	if (j->o.coupling == INTERP_TUBE &&
-	    j->o.strategy != INTERP_MIN_SWITCH)
-		j->o.coupling = INTERP_STAR;
 }
 
 static void a_place_sought_is_the_place_walked_to(void **state)

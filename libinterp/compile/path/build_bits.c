@@ -14,8 +14,7 @@ struct plan {
 	struct pair_tube tube;
 };
 
-/* The pairs as the cursor will have them; false: there are no bursts that could
- * be improved. */
+/* The pairs as the cursor will have them; false: there are none. */
 static bool plan_pairs(struct plan *p, const struct interp_build_options *o,
 		       const struct build_way *w)
 {
@@ -33,7 +32,8 @@ static bool plan_pairs(struct plan *p, const struct interp_build_options *o,
 		return true;
 	}
 	couple_star(p->pair, in, n);
-	return !couple_set_flat(p->pair, p->npairs, &rule, false);
+	couple_set_star(p->pair, p->npairs, &rule, false);
+	return true;
 }
 
 static struct greedy_line line_of(const struct plan *p, uint32_t i)

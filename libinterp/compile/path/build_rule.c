@@ -31,14 +31,6 @@ int build_refuse_tolerance(const struct interp_build_options *o,
 			       smallest / 1000.0);
 }
 
-static int refuse_tube(const struct interp_build_options *o,
-		       struct interp_diag *diag)
-{
-	return interp_diag_say(diag, "coupling tube with strategy %s; "
-			       "strategy min-switch, or coupling star or tree",
-			       interp_strategy_name(o->strategy));
-}
-
 uint32_t build_rule_inputs(const struct build_way *w, struct couple_input *in)
 {
 	uint32_t n = 0;
@@ -77,9 +69,6 @@ int build_rule_check(const struct interp_build_options *o,
 	n = build_rule_inputs(w, in);
 	if (n < 2)
 		return 0;
-	if (n > 2 && rule.coupling == INTERP_TUBE &&
-	    !s->runs)
-		return refuse_tube(o, diag);
 	if (!s->takes_tolerance)
 		return 0;
 	smallest = couple_smallest_milli(&rule, in, n);

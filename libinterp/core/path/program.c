@@ -175,7 +175,6 @@ bool interp_program_curve(const struct interp_program *p, uint32_t i,
 static const char *const couplings[INTERP_NCOUPLINGS] = {
 	[INTERP_STAR]	= "star",
 	[INTERP_TREE]	= "tree",
-	[INTERP_TUBE]	= "tube",
 };
 
 static const char *const escape_modes[INTERP_NESCAPE_MODES] = {

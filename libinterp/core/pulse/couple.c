@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * couple.c - trees, stars and tubes of pairs
+ * couple.c - trees and stars of pairs
  */
 #include "pulse/couple.h"
 #include "pulse/strategy.h"
@@ -80,141 +80,16 @@ struct pair_tube couple_tube(const struct couple_rule *r, uint32_t npairs)
 					    axis_tube(r->tube, npairs);
 }
 
-/* -- Shared stops ---------------------------------------------------------- */
-
-/* With @count bursts at the stops of @lead, would @p stay within its M of
- * @half? */
-static bool shared_ok(const struct interp_pair *p,
-		      const struct interp_pair *lead, int64_t count,
-		      int64_t half)
-{
-	const int64_t n = lead->bursts;
-	const int64_t stops = (n + count - 1) / count;
-	const int64_t sent = (stops * lead->b + n - 1) / n;
-	const int64_t gap = sent * p->a / lead->b + 1;
-	const int64_t first = pair_stop(p->a, lead->b, n,
-					pair_stop_shared(n, count, 0));
-	const int64_t last = pair_stop(p->a, lead->b, n,
-				       pair_stop_shared(n, count, count - 1));
-
-	/* A single burst has no gap, and the widest tube has no bounds. */
-	if (count > 1 && p->b * gap + p->a > 2 * half && half < p->a * p->b)
-		return false;
-	return p->b * first <= half && p->b * (p->a - last) <= half;
-}
-
-/* The smallest number of bursts at the stops of the lead that is enough for @p;
- * 0 if none is. */
-static int64_t shared_bursts(const struct interp_pair *p,
-			     const struct interp_pair *lead, int64_t half)
-{
-	const int64_t n = lead->bursts;
-	const int64_t room = 2 * half - p->a;
-	int64_t every;
-
-	if (room <= 0)
-		return 0;
-	every = (int64_t)((pulse_wide)room * n / (p->a * p->b)) + 1;
-	every = every < n ? every : n;
-	for (int tries = 0; tries < 4 && every > 1; tries++, every--) {
-		const int64_t count = (n + every - 1) / every;
-
-		if (shared_ok(p, lead, count, half))
-			return count;
-	}
-	return shared_ok(p, lead, n, half) ? n : 0;
-}
-
-static bool tube_set(struct interp_pair *pair, uint32_t npairs,
-		     struct pair_tube t, int64_t burst, bool at_end)
-{
-	uint32_t lead = 0;
-
-	for (uint32_t i = 1; i < npairs; i++)
-		lead = pair[i].b > pair[lead].b ? i : lead;
-	pair_set_bursts(&pair[lead], (pair[lead].b + burst - 1) / burst, NULL,
-			at_end);
-	for (uint32_t i = 0; i < npairs; i++) {
-		struct interp_pair *p = &pair[i];
-		int64_t count;
-
-		if (i == lead)
-			continue;
-		if (p->b == pair[lead].b) {
-			/* The same bursts, at the same places. */
-			pair_set_bursts(p, pair[lead].bursts, NULL, at_end);
-			continue;
-		}
-		count = shared_bursts(p, &pair[lead],
-				      pair_half_width(p->a, p->b, t));
-		if (count == 0)
-			return false;
-		pair_set_bursts(p, count, &pair[lead], at_end);
-	}
-	return true;
-}
-
-/* Changes of axis, at most: one to each burst, and one from each stop. */
-static int64_t star_changes(const struct interp_pair *pair, uint32_t npairs,
-			    struct pair_tube t)
-{
-	int64_t n = 0;
-
-	for (uint32_t i = 0; i < npairs; i++) {
-		const struct interp_pair *p = &pair[i];
-		const int64_t burst = pair_burst(p->a, p->b,
-				pair_half_width(p->a, p->b, t));
-
-		n += 2 * ((p->b + burst - 1) / burst);
-	}
-	return n;
-}
-
-static int64_t tube_changes(const struct interp_pair *pair, uint32_t npairs)
-{
-	int64_t n = 0, stops = 0;
-
-	for (uint32_t i = 0; i < npairs; i++) {
-		n += pair[i].bursts;
-		stops = pair[i].bursts > stops ? pair[i].bursts : stops;
-	}
-	return n + stops;
-}
-
-/* The longest bursts of the lead that still leave the others their
- * tolerance. */
-static bool tube_plan(struct interp_pair *pair, uint32_t npairs,
-		      struct pair_tube t, bool at_end)
-{
-	const int64_t star = star_changes(pair, npairs, t);
-	int64_t b = 0, burst;
-
-	for (uint32_t i = 0; i < npairs; i++)
-		b = pair[i].b > b ? pair[i].b : b;
-	burst = pair_burst(pair[0].a, b, pair_half_width(pair[0].a, b, t));
-	/* Each pulse less gives an axis a pulse of room; two are enough. */
-	for (int tries = 0; tries < 4 && burst >= 1; tries++, burst--) {
-		if (tube_set(pair, npairs, t, burst, at_end))
-			return tube_changes(pair, npairs) < star;
-	}
-	return false;
-}
-
-bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
+void couple_set_star(struct interp_pair *pair, uint32_t npairs,
 		     const struct couple_rule *r, bool at_end)
 {
 	struct couple_rule axis = *r;
 
 	axis.tube = axis_tube(r->tube, npairs);
-	if (r->coupling == INTERP_TUBE && pulse_strategy(r->strategy)->runs &&
-	    npairs > 1 && tube_plan(pair, npairs, axis.tube, at_end))
-		return true;
 	couple_set(pair, npairs, &axis, at_end);
-	return false;
 }
 
-/* -- Which mu a line allows
- * ------------------------------------------------- */
+/* -- Which mu a line allows ------------------------------------------------ */
 
 static bool couple_ok(const struct couple_rule *r,
 		      const struct couple_input *in, uint32_t n)

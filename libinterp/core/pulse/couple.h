@@ -13,16 +13,6 @@
  * is within its own rule's bound of the line; the whole within
  * sqrt(n - 1) of it.  With mu square to the line each gets mu/sqrt(n - 1).
  *
- * Tube: a star by bursts whose axes share their stops.  The longest secondary
- * has bursts of its own, any other waits for one of those, and not for every
- * one.  Fewest changes of axis from four axes on; mu as in a star.  With G the
- * widest gap between two stops an axis uses, it keeps to mu if
- *
- *	b*G + a <= 2*M
- *
- * Where shared stops are not possible, or would not save a change, it is a
- * star.
- *
  * Threads: RT-safe but for couple_smallest_milli().
  */
 #ifndef PULSE_COUPLE_H
@@ -61,11 +51,8 @@ uint32_t couple_star(struct interp_pair *pair, const struct couple_input *in,
 void couple_set(struct interp_pair *pair, uint32_t npairs,
 		const struct couple_rule *r, bool at_end);
 
-/**
- * couple_set_flat() - the same for a star or a tube.
- * Return: true if they share stops.
- */
-bool couple_set_flat(struct interp_pair *pair, uint32_t npairs,
+/** couple_set_star() - the same for a star. */
+void couple_set_star(struct interp_pair *pair, uint32_t npairs,
 		     const struct couple_rule *r, bool at_end);
 
 /** couple_tube() - the tube of each of @npairs pairs by the rule. */

@@ -25,7 +25,7 @@ static bool flat_enter(struct interp_cursor *c, bool at_end)
 		return false;
 	c->root = in[couple_star(c->pair, in, n)].code;
 	c->npairs = n - 1;
-	couple_set_flat(c->pair, c->npairs, &rule, at_end);
+	couple_set_star(c->pair, c->npairs, &rule, at_end);
 	if (!pulse_bits(c, c->npairs))
 		return false;
 	c->by_limit = true;

@@ -79,21 +79,14 @@ void pair_set_limit(struct interp_pair *p, int64_t limit, bool at_end)
 
 /* -- Bursts ---------------------------------------------------------------- */
 
-int64_t pair_stop(int64_t a, int64_t b, int64_t n, int64_t j)
-{
-	return ((j * b / n + (j + 1) * b / n) * a + b) / (2 * b);
-}
-
 /*
  * The neighbours of a burst are found from what is known of it, because
- * divisions are what bursts cost.  At stops of its own, a stop follows from the
- * two Y beside it; where another pair sets the stops, a Y follows from the two
- * X beside it.
+ * divisions are what bursts cost: X follows from the two Y beside it.
  */
 
 /* X(j), from Y(j) and Y(j + 1); there is none before the first burst and after
  * the last. */
-INLINE int64_t own_stop(const struct interp_pair *p, int64_t j, int64_t from,
+INLINE int64_t burst_stop(const struct interp_pair *p, int64_t j, int64_t from,
 			int64_t to)
 {
 	if (j < 0)
@@ -104,177 +97,63 @@ INLINE int64_t own_stop(const struct interp_pair *p, int64_t j, int64_t from,
 }
 
 /* Y(j). */
-INLINE int64_t own_from(const struct interp_pair *p, int64_t j)
+INLINE int64_t burst_from(const struct interp_pair *p, int64_t j)
 {
 	if (j <= 0)
 		return 0;
 	return j >= p->bursts ? p->b : j * p->b / p->bursts;
 }
 
-static int64_t led_stop(const struct interp_pair *p, int64_t j)
-{
-	if (j < 0)
-		return -1;
-	if (j >= p->bursts)
-		return PAIR_NEVER;
-	return pair_stop(p->a, p->lead, p->stops,
-			 pair_stop_shared(p->stops, p->bursts, j));
-}
-
-/* Half way between X(j - 1) and X(j). */
-static int64_t led_from(const struct interp_pair *p, int64_t j, int64_t before,
-			int64_t at)
-{
-	if (j <= 0)
-		return 0;
-	if (j >= p->bursts)
-		return p->b;
-	return (p->b * (before + at) + p->a) / (2 * p->a);
-}
-
 /* Look at burst j from its beginning. */
 static void burst_look(struct interp_pair *p)
 {
-	const int64_t j = p->burst;
-
-	if (!p->stops) {
-		p->from = own_from(p, j);
-		p->to = own_from(p, j + 1);
-		p->due = own_stop(p, j, p->from, p->to);
-		return;
-	}
-	p->before = led_stop(p, j - 1);
-	p->due = led_stop(p, j);
-	p->behind = led_stop(p, j + 1);
-	p->from = led_from(p, j, p->before, p->due);
-	p->to = led_from(p, j + 1, p->due, p->behind);
+	p->from = burst_from(p, p->burst);
+	p->to = burst_from(p, p->burst + 1);
+	p->due = burst_stop(p, p->burst, p->from, p->to);
 }
 
-/* The same of the next burst, at the stops of another pair. */
-static void led_on(struct interp_pair *p)
+INLINE void burst_find_prior(struct interp_pair *p)
 {
-	const int64_t j = ++p->burst;
-
-	p->from = p->to;
-	p->before = p->due;
-	p->due = p->behind;
-	p->behind = led_stop(p, j + 1);
-	p->to = led_from(p, j + 1, p->due, p->behind);
+	p->prior_from = burst_from(p, p->burst - 1);
+	p->done = burst_stop(p, p->burst - 1, p->prior_from, p->from);
 }
 
-/* Two stops may be so near to each other that nothing is due at the second. */
-static bool burst_is_empty(const struct interp_pair *p)
+INLINE void burst_next(struct interp_pair *p)
 {
-	return p->to == p->from;
-}
-
-/* Find the last burst before this one that is not empty, or -1. */
-static void led_find_prior(struct interp_pair *p)
-{
-	const int64_t to = p->from;
-	int64_t j = p->burst, from, at = p->before;
-
-	do {
-		j--;
-		p->done = at;
-		at = led_stop(p, j - 1);
-		from = led_from(p, j, at, p->done);
-	} while (j >= 0 && from == to);
-	p->prior = j;
-	p->prior_from = from;
-	p->prior_before = at;
-}
-
-/* At stops of its own, no burst is empty. */
-INLINE void own_find_prior(struct interp_pair *p)
-{
-	p->prior = p->burst - 1;
-	p->prior_from = own_from(p, p->prior);
-	p->done = own_stop(p, p->prior, p->prior_from, p->from);
-}
-
-static void burst_find_prior(struct interp_pair *p)
-{
-	if (p->stops)
-		led_find_prior(p);
-	else
-		own_find_prior(p);
-}
-
-INLINE void own_next(struct interp_pair *p)
-{
-	p->prior = p->burst++;
+	p->burst++;
 	p->prior_from = p->from;
 	p->done = p->due;
 	p->from = p->to;
-	p->to = own_from(p, p->burst + 1);
-	p->due = own_stop(p, p->burst, p->from, p->to);
+	p->to = burst_from(p, p->burst + 1);
+	p->due = burst_stop(p, p->burst, p->from, p->to);
 }
 
-INLINE void own_back(struct interp_pair *p)
+INLINE void burst_back(struct interp_pair *p)
 {
-	p->burst = p->prior;
+	p->burst--;
 	p->to = p->from;
 	p->from = p->prior_from;
 	p->due = p->done;
-	own_find_prior(p);
+	burst_find_prior(p);
 }
 
 void pair_burst_next(struct interp_pair *p)
 {
-	if (!p->stops) {
-		own_next(p);
-		return;
-	}
-	p->prior = p->burst;
-	p->prior_from = p->from;
-	p->prior_before = p->before;
-	p->done = p->due;
-	do
-		led_on(p);
-	while (p->burst < p->bursts && burst_is_empty(p));
+	burst_next(p);
 }
 
 void pair_burst_back(struct interp_pair *p)
 {
-	if (!p->stops) {
-		own_back(p);
-		return;
-	}
-	p->behind = p->prior + 1 == p->burst ? p->due :
-		    led_stop(p, p->prior + 1);
-	p->burst = p->prior;
-	p->to = p->from;
-	p->from = p->prior_from;
-	p->due = p->done;
-	p->before = p->prior_before;
-	led_find_prior(p);
-}
-
-static int64_t burst_stop(const struct interp_pair *p, int64_t j)
-{
-	return p->stops ? led_stop(p, j) :
-			  own_stop(p, j, own_from(p, j), own_from(p, j + 1));
+	burst_back(p);
 }
 
 int64_t pair_burst_changes(const struct interp_pair *p)
 {
-	return 2 * p->bursts - (burst_stop(p, 0) == 0) -
-	       (burst_stop(p, p->bursts - 1) == p->a);
-}
+	const int64_t n = p->bursts;
+	const int64_t first = burst_stop(p, 0, 0, burst_from(p, 1));
+	const int64_t last = burst_stop(p, n - 1, burst_from(p, n - 1), p->b);
 
-void pair_set_bursts(struct interp_pair *p, int64_t n,
-		     const struct interp_pair *lead, bool at_end)
-{
-	pair_stand(p, at_end);
-	p->bursts = n;
-	p->lead = lead ? lead->b : 0;
-	p->stops = lead ? lead->bursts : 0;
-	p->burst = at_end ? n : 0;
-	burst_look(p);
-	while (p->stops && p->burst < n && burst_is_empty(p))
-		led_on(p);
-	burst_find_prior(p);
+	return 2 * n - (first == 0) - (last == p->a);
 }
 
 /* -- Stored bits ---------------------------------------------------------- */
@@ -396,7 +275,7 @@ uint32_t pair_rows(struct interp_pair *p, uint32_t n, uint8_t *restrict row)
 		left -= p->due - m + p->to - p->s;
 		m = p->due;
 		p->s = p->to;
-		own_next(p);
+		burst_next(p);
 	}
 	row_last(p->due - m, left, row + k);
 	m += row[k];
@@ -417,18 +296,18 @@ uint32_t pair_rows_back(struct interp_pair *p, uint32_t n,
 	row[1] = (uint8_t)fewer(left, p->s - p->from);
 	left -= row[1];
 	p->s -= row[1];
-	for (; p->prior >= 0 && m - p->done + p->from - p->prior_from <= left;
+	for (; p->burst > 0 && m - p->done + p->from - p->prior_from <= left;
 	     k += 2) {
 		row[k] = (uint8_t)(m - p->done);
 		row[k + 1] = (uint8_t)(p->from - p->prior_from);
 		left -= m - p->done + p->from - p->prior_from;
 		m = p->done;
-		own_back(p);
+		burst_back(p);
 		p->s = p->from;
 	}
 	row_last(m - p->done, left, row + k);
 	if (row[k + 1] > 0)
-		own_back(p);
+		burst_back(p);
 	m -= row[k];
 	p->s -= row[k + 1];
 	p->dev += p->b * (m - p->m) - p->a * (p->s - was);
@@ -456,7 +335,11 @@ void pair_set_min_switch(struct interp_pair *p, int64_t half, bool at_end)
 	if (p->b == 0)
 		return;
 	burst = pair_burst(p->a, p->b, half);
-	pair_set_bursts(p, (p->b + burst - 1) / burst, NULL, at_end);
+	pair_stand(p, at_end);
+	p->bursts = (p->b + burst - 1) / burst;
+	p->burst = at_end ? p->bursts : 0;
+	burst_look(p);
+	burst_find_prior(p);
 }
 
 void pair_set(struct interp_pair *p, enum interp_strategy rule,

@@ -100,25 +100,8 @@ void pair_set_min_switch(struct interp_pair *p, int64_t half, bool at_end);
 /** pair_set_limit() - the same, with T given; T >= -b.  For experiments. */
 void pair_set_limit(struct interp_pair *p, int64_t limit, bool at_end);
 
-/**
- * pair_set_bursts() - the same, with @n bursts; b > 0.  Without @lead, @n <= b.
- * @lead: NULL, or another pair with as many main pulses, which runs by bursts.
- * This pair then has its bursts only where @lead has one.
- */
-void pair_set_bursts(struct interp_pair *p, int64_t n,
-		     const struct interp_pair *lead, bool at_end);
-
 /** pair_burst_changes() - how often the input changes, with bursts. */
 int64_t pair_burst_changes(const struct interp_pair *p);
-
-/** pair_stop() - X(j) of @n bursts of a pair of @a and @b pulses. */
-int64_t pair_stop(int64_t a, int64_t b, int64_t n, int64_t j);
-
-/** pair_stop_shared() - of @n stops, the one that burst @j of @count uses. */
-static inline int64_t pair_stop_shared(int64_t n, int64_t count, int64_t j)
-{
-	return (2 * j + 1) * n / (2 * count);
-}
 
 /**
  * pair_set_bits() - the same, with a + b stored bits.

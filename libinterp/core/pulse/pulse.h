@@ -48,7 +48,7 @@ struct interp_walk {
 extern const struct interp_walk pulse_line;
 /* Arcs, all axes at once: arc.c. */
 extern const struct interp_walk pulse_arc;
-/* Lines of three or more axes as a star or a tube: flat.c. */
+/* Lines of three or more axes as a star: flat.c. */
 extern const struct interp_walk pulse_flat;
 /* Lines and helices, one axis at a time: tree.c. */
 extern const struct interp_walk pulse_tree;

@@ -20,7 +20,7 @@ struct pulse_strategy {
 	/* Lines of one or two axes, and of any number that are coupled as a
 	 * tree. */
 	const struct interp_walk *line;
-	/* Lines of three or more axes that are coupled as a star or a tube. */
+	/* Lines of three or more axes that are coupled as a star. */
 	const struct interp_walk *flat;
 	/* Arcs; NULL: a circle or a helix, one axis at a time. */
 	const struct interp_walk *arc;
@@ -37,9 +37,8 @@ struct pulse_strategy {
 	bool takes_tolerance;		/* mu says how far it may be off */
 	bool couples;			/* the coupling of the axes can be
 					 * chosen */
-	bool runs;			/* stays with an axis for many pulses;
-					 * tubes, and runs around a circle, are
-					 * made for this */
+	bool runs;			/* stays with an axis for many pulses,
+					 * around a circle, too */
 };
 
 /** pulse_strategy() - the row of @s, which is below INTERP_NSTRATEGIES. */

@@ -56,12 +56,7 @@ struct interp_pair {
 	int64_t burst;			/* the one being sent, or next */
 	int64_t from, to;		/* s where it begins and ends */
 	int64_t due, done;		/* m where it is, where the last was */
-	int64_t before, behind;		/* m where its neighbours are, at
-					 * another pair's stops */
-	int64_t prior;			/* the one sent last; -1: none */
-	int64_t prior_from, prior_before;	/* its from and before */
-	int64_t lead, stops;		/* bursts at another pair's: its b and
-					 * bursts; 0: at places of its own */
+	int64_t prior_from;		/* where the one sent last began */
 	const uint64_t *bits;		/* which input gives each pulse; NULL:
 					 * by bursts or by limit */
 	int8_t in_a, in_b;		/* an axis, or ~another pair */

@@ -63,8 +63,6 @@ enum interp_coupling {
 	INTERP_STAR,			/* each axis against the longest one */
 	INTERP_TREE,			/* pairs of pairs,
 					 * (((X,Y),(Z,A)),(B,C)) */
-	INTERP_TUBE,			/* a star whose axes share their stops:
-					 * min-switch only */
 	INTERP_NCOUPLINGS
 };
 
