@@ -132,7 +132,7 @@ static const struct verb verbs[] = {
 	  "the table of electrodes, and which one is in the holder" },
 	{ "mdi", "LINE ...", ctl_mdi, CTL_WORDS_MAX - 1, 1, false, "",
 	  "while idle: carry out lines of NC code at once" },
-	{ "offset", "[G54 X=0|X@0|Z=probe|clear ...]", ctl_offset,
+	{ "offset", "[G54|T3 X=0|X@0|Z=probe|bore ...]", ctl_offset,
 	  CTL_WORDS_MAX - 1, 0, false, "",
 	  "print the work offsets; touch off an axis, or feel for it" },
 	{ "generator", "[set FIELD VALUE|walk]", ctl_generator, 3, 0, false,

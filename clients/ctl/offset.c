@@ -2,7 +2,6 @@
 /* offset.c - work offsets, and lines that are carried out at once */
 #include "ctl.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,28 +85,28 @@ static int list(struct ctl *c)
 	return err;
 }
 
-static bool has_probe(const char *text)
-{
-	char low[TEXT_MAX];
-	size_t i;
-
-	for (i = 0; text[i]; i++)
-		low[i] = (char)tolower((unsigned char)text[i]);
-	low[i] = '\0';
-	return strstr(low, "=probe") != NULL;
-}
-
+/* What is felt for is a job, which the answer names; it tells what it found. */
 int ctl_offset(struct ctl *c)
 {
-	char text[TEXT_MAX];
+	struct talk_answer a;
+	char text[TEXT_MAX], told[TEXT_MAX];
 	int err;
 
 	if (!c->arg)
 		return list(c);
 	err = join(c, text);
+	if (err == 0)
+		err = ctl_ask(c, &(struct talk_question) {
+			.verb = "offset", .text = text }, &a);
 	if (err)
 		return err;
-	return has_probe(text) ? follow(c, "offset", text) :
-	       ctl_say(c, &(struct talk_question) {
-		       .verb = "offset", .text = text });
+	snprintf(told, sizeof(told), "%s", a.reason);
+	talk_answer_free(&a);
+	if (strncmp(told, "offset-", 7) == 0)
+		return ctl_wait(c, told);
+	if (c->json)
+		puts("{\"verb\": \"offset\", \"code\": 0}");
+	else
+		printf("offset: %s\n", told);
+	return 0;
 }

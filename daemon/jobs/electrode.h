@@ -99,10 +99,6 @@ void electrode_interrupted(struct jobs *j, const struct checkpoint_base *b);
 void electrode_settle(struct jobs *j, uint32_t n,
 		      const struct shm_ended *ended);
 
-/** electrode_measured() - the job is done: if it measured an electrode, store
- *  the result. */
-void electrode_measured(struct jobs *j);
-
 /** electrode_is_worn() - is its life used up? */
 bool electrode_is_worn(const struct store_electrode *e);
 
@@ -131,6 +127,15 @@ bool electrode_find_named(struct jobs *j, const struct jobs_lcm_command *c,
 			  struct store_electrode *ret);
 
 /* -- electrode_measure.c -- */
+
+/** electrode_no_length() - why its length cannot be taken, as that of a new
+ *  one or not; NULL: it can. */
+const char *electrode_no_length(const struct store_electrode *e, bool is_new);
+
+/** electrode_put_length() - electrode @number was felt, and is so long now.
+ *  @told: what was and what is.  Return: that of the store. */
+int electrode_put_length(struct jobs *j, uint32_t number, double length_mm,
+			 bool is_new, char told[ELECTRODE_WHY_MAX]);
 
 /* Puts a job into the queue that measures the electrode.  If the text is "new",
  * the result is its length when it was new. */

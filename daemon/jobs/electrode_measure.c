@@ -8,18 +8,15 @@
 #include "act.h"
 #include "electrode.h"
 #include "jobs.h"
-#include "offset.h"
 #include "verb.h"
 
 #include <errno.h>
-#include <math.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
 
-#define NEW		10000u		/* store_job.measures: as a new one */
 #define TEXT_MAX	600
 
 static const struct config_measure *of(const struct jobs *j)
@@ -43,7 +40,9 @@ static void put_over(const struct jobs *j, char *to, size_t size)
 		snprintf(to + n, size - n, "\n");
 }
 
-static void make_text(const struct jobs *j, uint32_t number, char *to)
+/* The first line is that of touch.h. */
+static void make_text(const struct jobs *j, uint32_t number, bool is_new,
+		      char *to)
 {
 	const struct config_measure *m = of(j);
 	const double way_mm = m->from_z_mm - m->to_z_mm;
@@ -51,10 +50,19 @@ static void make_text(const struct jobs *j, uint32_t number, char *to)
 
 	put_over(j, over, sizeof(over));
 	/* Behind the contact only distances mean anything. */
-	snprintf(to, TEXT_MAX, "(measures electrode %u)\nG21 G90 F60\n"
+	snprintf(to, TEXT_MAX, "(T%u Z=probe-%.4f%s)\nG21 G90 F60\n"
 		 "G53 G0 Z%.4f\n%s%sG53 G0 Z%.4f\nG91 G80 Z-%.4f\n"
-		 "G0 Z%.4f\nM2\n", number, m->clear_z_mm,
+		 "G0 Z%.4f\nM2\n", number, way_mm, is_new ? " new" : "",
+		 m->clear_z_mm,
 		 *over ? "G53 G0" : "", over, m->from_z_mm, way_mm, way_mm);
+}
+
+const char *electrode_no_length(const struct store_electrode *e, bool is_new)
+{
+	return is_new || e->length_mm > 0 ? NULL :
+	       "its length is not known yet; electrode measure N new takes "
+	       "what is measured as the length of a new one, and so does "
+	       "offset TN Z=probe-20 new";
 }
 
 /* Why it cannot be measured; NULL: it can. */
@@ -79,10 +87,7 @@ static const char *why_not(const struct jobs *j,
 	if (e->state == ELECTRODE_ABSENT)
 		return "this electrode is absent; bring it, and electrode set N "
 		       "state=there";
-	if (!is_new && !(e->length_mm > 0))
-		return "its length is not known yet; electrode measure N new "
-		       "takes what is measured as the length of a new one";
-	return NULL;
+	return electrode_no_length(e, is_new);
 }
 
 static int add_job(struct jobs *j, const struct jobs_lcm_command *c,
@@ -91,7 +96,7 @@ static int add_job(struct jobs *j, const struct jobs_lcm_command *c,
 	char text[TEXT_MAX], name[64], hex[65], told[64];
 	unsigned char hash[crypto_hash_sha256_BYTES];
 
-	make_text(j, number, text);
+	make_text(j, number, is_new, text);
 	snprintf(id, 64, "measure-%u-%llx", number, (unsigned long long)c->act);
 	snprintf(name, sizeof(name), "measure electrode %u%s", number,
 		 is_new ? " new" : "");
@@ -102,7 +107,7 @@ static int add_job(struct jobs *j, const struct jobs_lcm_command *c,
 		.id = id, .name = name, .sha256 = hex, .tech_sha256 = "",
 		.text = text, .bytes = strlen(text), .lines = 8, .hold = true,
 		.now_us = jobs_utime(), .electrode = number,
-		.measures = number + (is_new ? NEW : 0), .told = told,
+		.measures = true, .told = told,
 	});
 }
 
@@ -136,42 +141,27 @@ void electrode_measure(struct jobs *j, const struct verb *v,
 	verbs_answer(j, c, 0, reason);
 }
 
-static void write_down(struct jobs *j, struct store_electrode *e,
-		       double length_mm, bool is_new)
+int electrode_put_length(struct jobs *j, uint32_t number, double length_mm,
+			 bool is_new, char told[ELECTRODE_WHY_MAX])
 {
-	const double was_mm = e->wear_mm;
+	struct store_electrode e, was;
+	int err = store_electrode_find(j->store, number, &e);
 
+	if (err < 0)
+		return err;
+	was = e;
 	if (is_new) {
-		e->length_mm = length_mm;
-		e->wear_mm = e->spark_s = 0;
-		e->state = ELECTRODE_THERE;
+		e.length_mm = length_mm;
+		e.wear_mm = e.spark_s = 0;
+		e.state = ELECTRODE_THERE;
 	} else {
-		e->wear_mm = e->length_mm - length_mm;
-		if (electrode_is_worn(e))
-			e->state = ELECTRODE_WORN;
+		e.wear_mm = e.length_mm - length_mm;
+		if (electrode_is_worn(&e))
+			e.state = ELECTRODE_WORN;
 	}
-	store_electrode_put(j->store, e);
-	jobs_note(j, &(struct jobs_note) {
-		.kind = "electrode", .job = j->queue.job.id,
-	}, "electrode %u %s measured: %.4f mm long, wear %.4f mm; the table "
-		  "had %.4f mm", e->n, e->name, length_mm, e->wear_mm, was_mm);
-}
-
-void electrode_measured(struct jobs *j)
-{
-	const struct shm_snapshot *s = &j->queue.snap;
-	const uint32_t measures = j->queue.job.measures;
-	const double z_mm = s->found[0][INTERP_Z] * s->pulse_mm[INTERP_Z];
-	struct store_electrode e;
-
-	if (measures == 0 || measures >= OFFSET_TOUCHES ||
-	    store_electrode_find(j->store, measures % NEW, &e) < 0)
-		return;
-	if (s->found_once >> INTERP_Z & 1)
-		write_down(j, &e, z_mm - of(j)->reference_z_mm,
-			   measures >= NEW);
-	else
-		jobs_note(j, &(struct jobs_note) {
-			.kind = "electrode", .job = j->queue.job.id,
-		}, "electrode %u was not measured: there was no contact", e.n);
+	snprintf(told, ELECTRODE_WHY_MAX,
+		 "electrode %u %s was measured: it was %.4f mm long, is %.4f mm long; wear %.4f mm, the table had %.4f mm",
+		 e.n, e.name, was.length_mm - was.wear_mm, length_mm,
+		 e.wear_mm, was.wear_mm);
+	return store_electrode_put(j->store, &e);
 }

@@ -67,6 +67,8 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 	/* What interrupted it has booked it: interrupt.c. */
 	if (state != JOB_INTERRUPTED)
 		electrode_book(j);
+	if (state == JOB_DONE)
+		reason = offset_touched(j);
 	jobs_with_note(j);
 	queue_record(j, state, reason);
 	forecaster_learn(j);
@@ -80,11 +82,8 @@ void queue_end(struct jobs *j, enum job_state state, const char *reason)
 	}, "job %s %s%s%s", q->job.name, store_state_name(state),
 		  *reason ? ": " : "", reason);
 	electrode_tell(j);
-	if (state == JOB_DONE) {
-		electrode_measured(j);
-		offset_touched(j);
+	if (state == JOB_DONE)
 		return;
-	}
 	if (q->behind > 0)
 		queue_wait(j);
 	else

@@ -14,12 +14,6 @@
 #include "verb.h"
 
 /**
- * store_job.measures of a job that touches off: this, plus 8 * system + axis.
- * Numbers of electrodes are smaller.
- */
-#define OFFSET_TOUCHES	100000u
-
-/**
  * offset_request() - fill in the offsets for the compiler.
  *
  * @job: NULL if it is not in the store yet.  One that is loaded for the first
@@ -30,15 +24,16 @@
 int offset_request(struct jobs *j, const struct store_job *job,
 		   struct compiler_request *ret);
 
-/** offset_touched() - the job is done: if it touched off, write that down. */
-void offset_touched(struct jobs *j);
+/** offset_touched() - the job is done: if it felt for an offset or an
+ *  electrode, write down what it found.  Return: what was and what is; "". */
+const char *offset_touched(struct jobs *j);
 
 /* -- Functions of rows in verbs.c -- */
 
 /* The array of all systems. */
 void offset_list(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c);
-/* text: the system, then lines X=5, X@5, X=probe, or clear. */
+/* text: touch.h. */
 void offset_set(struct jobs *j, const struct verb *v,
 		const struct jobs_lcm_command *c);
 

@@ -30,20 +30,22 @@ static bool is_of(const struct shm_ended *e, const struct store_job *job)
 	       (e->outcome == SHM_OUTCOME_DONE || e->job_cycles > 0);
 }
 
-static const char *why_ended(const struct shm_ended *e)
+/* What it felt for is gone from edmd with it. */
+static const char *why_ended(const struct shm_ended *e, uint32_t measures)
 {
-	return e->outcome == SHM_OUTCOME_DONE ? "" :
+	return e->outcome == SHM_OUTCOME_DONE ? measures ?
+	       "what it found was not written down; once more" : "" :
 	       e->outcome == SHM_OUTCOME_FAULT ? "after a fault" :
 	       "by command";
 }
 
-static void record(struct jobs *j, uint32_t n, enum job_state state,
-		   const struct shm_ended *e)
+static void record(struct jobs *j, const struct store_job *job,
+		   enum job_state state, const struct shm_ended *e)
 {
 	const double period_s = (double)e->period_ns / 1e9;
 
-	store_end(j->store, n, &(struct store_end) {
-		.state = state, .reason = why_ended(e),
+	store_end(j->store, job->n, &(struct store_end) {
+		.state = state, .reason = why_ended(e, job->measures),
 		.now_us = e->time_ns / 1000, .place_mm = e->far_mm,
 		.length_mm = e->length_mm, .depth_mm = e->depth_mm,
 		.job_s = (double)e->job_cycles * period_s,
@@ -52,9 +54,9 @@ static void record(struct jobs *j, uint32_t n, enum job_state state,
 		.erode_s = (double)e->erode_cycles * period_s,
 		.energy_j = e->energy_j,
 	});
-	tally_settle(j, n, e);
-	electrode_settle(j, n, e);
-	store_set_loaded(j->store, n, false);
+	tally_settle(j, job->n, e);
+	electrode_settle(j, job->n, e);
+	store_set_loaded(j->store, job->n, false);
 }
 
 static void settle_one(void *arg, const struct shm_ended *e)
@@ -62,8 +64,8 @@ static void settle_one(void *arg, const struct shm_ended *e)
 	struct jobs *j = arg;
 	const enum job_state state = e->outcome == SHM_OUTCOME_DONE ?
 				     JOB_DONE : JOB_STOPPED;
-	const char *why = why_ended(e);
 	struct store_job job;
+	const char *why;
 
 	/* The program that is in edmd now is followed by its snapshot. */
 	if (e->program == j->link.snap.program ||
@@ -72,8 +74,9 @@ static void settle_one(void *arg, const struct shm_ended *e)
 		return;
 	log_notice("queue: edmd says that job %s, which is %s in the store, "
 		   "has ended", job.id, store_state_name(job.state));
+	why = why_ended(e, job.measures);
 	jobs_with_note(j);
-	record(j, job.n, state, e);
+	record(j, &job, state, e);
 	/* Who told it before could not store that it did. */
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "ended", .job = job.id, .place_mm = e->far_mm,

@@ -54,9 +54,8 @@ struct store_job {
 	uint32_t lines;			/* of the text */
 	uint32_t electrode;		/* it begins with; 0: the one in the
 					 * holder */
-	uint32_t measures;		/* this electrode, or what it touches
-					 * off: offset.h; 0: it is a job to
-					 * cut */
+	uint32_t measures;		/* its text says what: touch.h; 0: it is
+					 * a job to cut */
 };
 
 struct store_new {

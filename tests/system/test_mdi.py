@@ -203,7 +203,7 @@ def test_an_axis_feels_for_its_origin(tmp_path):
     with rig.Machine(tmp_path, BLOCK_MACHINE) as m:
         m.start()
         code, out = said(m.ctl("offset", "G55", "Z=probe"))
-        assert code == 0 and "touch off G55 Z-: done" in out, out
+        assert code == 0 and "touch off G55 Z=probe: done" in out, out
         o = offsets(m)["G55"]
         assert o["touched"] == "Z" and o["Z"] == pytest.approx(-1.5, abs=2e-3)
         assert m.ctl("mdi", "G55 G0 Z0.75").returncode == 0

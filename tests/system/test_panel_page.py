@@ -154,26 +154,6 @@ def test_a_part_from_its_error_to_the_history(p, page):
         assert f.read() == table.stdout.replace("\n", "\r\n")
 
 
-def test_a_probing_form_makes_the_code_it_runs(p, page):
-    page.goto(p.url + "/#/setup")
-    code = page.locator(".probing pre")
-    expect(code).to_contain_text("G80 X-10")
-    page.get_by_role("radio", name="Centre of a hole").click()
-    expect(code).to_contain_text("G160 R10 Q0.1 L2")
-    page.get_by_label("Farthest way to a wall").fill("7,5")
-    expect(code).to_contain_text("G160 R7.5")
-    page.get_by_label("Farthest way to a wall").fill("seven")
-    expect(page.locator("#probe-run")).to_have_attribute("aria-disabled",
-                                                         "true")
-    session = p.session()
-    for name in ("Edge or face", "Centre of a hole", "Centre of a block",
-                 "Corner"):
-        page.get_by_role("radio", name=name).click()
-        text = code.inner_text()
-        status, got = session.post("/api/check?name=probe.ngc", text.encode())
-        assert status == 200 and got["ok"], (name, text, got)
-
-
 def test_an_axis_is_jogged_by_steps(p, page):
     page.goto(p.url + "/#/setup")
     before = p.machine.client.status().pos_mm[0]

@@ -11,9 +11,11 @@ import { useAsk } from "./use";
 import { t } from "./words";
 
 /** Of each axis, where its origin is; `touched`: those not of the machine file. */
-interface Row { work: string; touched: string; [axis: string]: string | number }
+export interface Row { work: string; touched: string; [axis: string]: string | number }
 
-const LOOK_MS = 5000;
+/** The systems that every control has; the others are in the table alone. */
+export const WORKS = ["G54", "G55", "G56", "G57", "G58", "G59"];
+export const LOOK_MS = 5000;
 // What a number means, as `edmctl offset` writes it: X=5, X@5.
 const MEANS = { here: "=", origin: "@" } as const;
 type Means = keyof typeof MEANS;

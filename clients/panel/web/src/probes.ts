@@ -1,72 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Probing cycles as forms: what they ask for, and the G code they make.
-// The words are those of docs/probe.md.
+// Touching off as forms: what each asks for, and the words of `edmctl offset`
+// that it makes.  The words are those of docs/probe.md.
 import { parse } from "./format";
 import type { Word } from "./words";
 
-export type ProbeId = "edge" | "hole" | "block" | "corner";
+export type ProbeId = "edge" | "hole" | "block" | "corner" | "length";
 
 export interface Ask { key: string; label: Word; unit: string; preset: string; may?: boolean; choices?: string[] }
 
-export interface Probe { id: ProbeId; asks: Ask[]; code: (v: Record<string, string>) => string[] }
+/** `axes`: those that get a number; null: the electrode gets its length. */
+export interface Probe { id: ProbeId; asks: Ask[]; axes: (v: Values) => string[] | null; words: (v: Values) => string[] }
 
-function num(v: Record<string, string>, key: string): string {
-	const x = parse(v[key] ?? "");
-	return Number.isNaN(x) ? "" : String(Number(x.toFixed(6)));
-}
-
-function word(v: Record<string, string>, key: string, letter: string): string {
-	const n = num(v, key);
-	return n === "" ? "" : ` ${letter}${n}`;
-}
-
-// G92 names the place the electrode stands at.
-function zero(v: Record<string, string>, axes: string[]): string[] {
-	const words = axes.map((a) => word(v, `zero${a}`, a)).join("");
-	return words ? [`G92${words}`] : [];
-}
+export type Values = Record<string, string>;
 
 const WAYS = ["+", "-"];
+const number = (key: string, label: Word, preset: string, may = false): Ask => ({ key, label, unit: "mm", preset, may });
+const side = (key: string, label: Word, preset: string): Ask => ({ key, label, unit: "", preset, choices: WAYS });
+const zero = (axis: string): Ask => ({ key: `zero${axis}`, label: "probe.zero", unit: axis ? `${axis} mm` : "mm", preset: "0" });
+const radius = number("tool", "probe.tool", "0");
+
+function num(v: Values, key: string): number {
+	return Number(parse(v[key] ?? "").toFixed(6));
+}
+
+/** Such as R10; without a number it is left out. */
+function word(v: Values, key: string, letter: string): string[] {
+	const n = num(v, key);
+	return Number.isNaN(n) ? [] : [`${letter}${n}`];
+}
+
+const walls = (v: Values): string[] => num(v, "tool") > 0 ? word(v, "tool", "radius=") : [];
+const zeros = (v: Values): string[] => ["X", "Y"].flatMap((a) => word(v, `zero${a}`, `${a}=`));
 
 export const PROBES: Probe[] = [
-	{ id: "edge", asks: [
-		{ key: "axis", label: "probe.axis", unit: "", preset: "X", choices: ["X", "Y", "Z"] },
-		{ key: "way", label: "probe.way", unit: "", preset: "-", choices: WAYS },
-		{ key: "far", label: "probe.far", unit: "mm", preset: "10" },
-		{ key: "zero", label: "probe.zero", unit: "mm", preset: "", may: true }],
-	code: (v) => {
-		const far = num(v, "far"), axis = v.axis ?? "X";
-		return ["G21 G91", `G80 ${axis}${v.way === "-" ? "-" : ""}${far}`, "G90", ...(num(v, "zero") ? [`G92 ${axis}${num(v, "zero")}`] : []), "M30"];
-	} },
-	{ id: "hole", asks: [
-		{ key: "radius", label: "probe.radius", unit: "mm", preset: "10" },
-		{ key: "off", label: "probe.off", unit: "mm", preset: "0.1", may: true },
-		{ key: "times", label: "probe.times", unit: "", preset: "2" },
-		{ key: "zeroX", label: "probe.zero", unit: "X mm", preset: "0", may: true },
-		{ key: "zeroY", label: "probe.zero", unit: "Y mm", preset: "0", may: true }],
-	code: (v) => ["G21 G90", `G160${word(v, "radius", "R")}${word(v, "off", "Q")}${word(v, "times", "L")}`, ...zero(v, ["X", "Y"]), "M30"] },
-	{ id: "block", asks: [
-		{ key: "x", label: "probe.sidex", unit: "mm", preset: "15" },
-		{ key: "y", label: "probe.sidey", unit: "mm", preset: "15" },
-		{ key: "down", label: "probe.down", unit: "mm", preset: "5" },
-		{ key: "off", label: "probe.off", unit: "mm", preset: "0.1", may: true },
-		{ key: "zeroX", label: "probe.zero", unit: "X mm", preset: "0", may: true },
-		{ key: "zeroY", label: "probe.zero", unit: "Y mm", preset: "0", may: true }],
-	code: (v) => ["G21 G90", `G161${word(v, "x", "I")}${word(v, "y", "J")}${word(v, "down", "K")}${word(v, "off", "Q")}`, ...zero(v, ["X", "Y"]), "M30"] },
-	{ id: "corner", asks: [
-		{ key: "wayX", label: "probe.wayx", unit: "", preset: "+", choices: WAYS },
-		{ key: "wayY", label: "probe.wayy", unit: "", preset: "+", choices: WAYS },
-		{ key: "x", label: "probe.sidex", unit: "mm", preset: "10", may: true },
-		{ key: "y", label: "probe.sidey", unit: "mm", preset: "10", may: true },
-		{ key: "off", label: "probe.off", unit: "mm", preset: "0.5" },
-		{ key: "zeroX", label: "probe.zero", unit: "X mm", preset: "", may: true },
-		{ key: "zeroY", label: "probe.zero", unit: "Y mm", preset: "", may: true }],
-	code: (v) => ["G21 G90", `G162 X${v.wayX} Y${v.wayY}${word(v, "x", "I")}${word(v, "y", "J")}${word(v, "off", "Q")}`, ...zero(v, ["X", "Y"]), "M30"] },
+	{ id: "edge", asks: [{ key: "axis", label: "probe.axis", unit: "", preset: "X", choices: ["X", "Y", "Z"] },
+		side("way", "probe.way", "-"), number("far", "probe.far", "10"), zero(""), radius],
+	axes: (v) => [v.axis ?? "X"],
+	words: (v) => [`${v.axis}=probe${v.way}${num(v, "far")}`, ...word(v, "zero", `${v.axis}=`), ...(v.axis === "Z" ? [] : walls(v))] },
+	{ id: "hole", asks: [number("radius", "probe.radius", "10"), number("off", "probe.off", "0.1", true),
+		{ key: "times", label: "probe.times", unit: "", preset: "2" }, zero("X"), zero("Y")],
+	axes: () => ["X", "Y"],
+	words: (v) => ["bore", ...word(v, "radius", "R"), ...word(v, "off", "Q"), ...word(v, "times", "L"), ...zeros(v)] },
+	{ id: "block", asks: [number("x", "probe.sidex", "15"), number("y", "probe.sidey", "15"), number("down", "probe.down", "5"),
+		number("off", "probe.off", "0.1", true), zero("X"), zero("Y")],
+	axes: () => ["X", "Y"],
+	words: (v) => ["boss", ...word(v, "x", "I"), ...word(v, "y", "J"), ...word(v, "down", "K"), ...word(v, "off", "Q"), ...zeros(v)] },
+	{ id: "corner", asks: [side("wayX", "probe.wayx", "+"), side("wayY", "probe.wayy", "+"), number("x", "probe.sidex", "10", true),
+		number("y", "probe.sidey", "10", true), number("off", "probe.off", "0.5"), zero("X"), zero("Y"), radius],
+	axes: () => ["X", "Y"],
+	words: (v) => ["corner", `X${v.wayX}`, `Y${v.wayY}`, ...word(v, "x", "I"), ...word(v, "y", "J"), ...word(v, "off", "Q"), ...zeros(v), ...walls(v)] },
+	{ id: "length", asks: [number("far", "probe.far", "10"), { key: "zero", label: "probe.face", unit: "Z mm", preset: "0" },
+		{ key: "is", label: "probe.is", unit: "", preset: "new", choices: ["new", "worn"] }],
+	axes: () => null,
+	words: (v) => [`Z=probe-${num(v, "far")}`, ...word(v, "zero", "Z="), ...(v.is === "new" ? ["new"] : [])] },
 ];
 
 /** Everything that has to be given is, and every number is one. */
-export function isWhole(p: Probe, v: Record<string, string>): boolean {
+export function isWhole(p: Probe, v: Values): boolean {
 	return p.asks.every((a) => a.choices ? a.choices.includes(v[a.key] ?? "") :
 		a.may && !(v[a.key] ?? "").trim() ? true : !Number.isNaN(parse(v[a.key] ?? "")));
 }

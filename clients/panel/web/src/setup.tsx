@@ -2,16 +2,16 @@
 //
 // Before the cut: home, jog, probe, offsets.
 import type { JSX } from "preact";
-import { useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import { whyNot } from "./can";
 import { ElectrodeCard } from "./electrodes";
 import { number, parse, short } from "./format";
-import { sendText } from "./jobs";
 import { link, type Axis } from "./link";
-import { OffsetCard } from "./offsets";
+import { LOOK_MS, OffsetCard, WORKS, type Row as OffsetRow } from "./offsets";
 import { Card, Choice, HoldKey, Key, NumberField, PressKey, act } from "./parts";
 import { beginPress } from "./press";
-import { PROBES, isWhole, type Probe, type ProbeId } from "./probes";
+import { PROBES, isWhole, type Probe, type ProbeId, type Values } from "./probes";
+import { say, useAsk } from "./use";
 import { t } from "./words";
 
 const STEPS = ["0.001", "0.01", "0.1", "1", "10"] as const;
@@ -82,22 +82,73 @@ function Drawing(p: { id: ProbeId; v: Record<string, string> }): JSX.Element {
 			<g transform={(minus ? "" : "translate(200 0) scale(-1 1)") + (p.v.axis === "Y" ? " rotate(-90 100 60)" : "")}><rect class="work" x="20" y="15" width="40" height="90" /><circle class="tool" cx="150" cy="60" r="12" /><path class="way" d="M134 60H68m7 -5 -7 5 7 5" /></g>,
 		hole: <g><path class="work" fill-rule="evenodd" d="M30 8h140v104H30zM100 18a42 42 0 1 0 .1 0z" /><circle class="tool" cx="92" cy="64" r="10" /><path class="way" d="M104 64h32m-6 -4 6 4 -6 4M80 64H62m6 -4 -6 4 6 4M92 52V24m-4 6 4 -6 4 6M92 76v20m-4 -6 4 6 4 -6" /><path class="cross" d="M96 60h8m-4 -4v8" /></g>,
 		block: <g><rect class="work" x="62" y="28" width="76" height="64" /><circle class="tool" cx="100" cy="60" r="9" /><path class="way" d="M26 60h30m-6 -4 6 4 -6 4M174 60h-30m6 -4 -6 4 6 4M100 6v16m-4 -6 4 6 4 -6M100 114V98m-4 6 4 -6 4 6" /><path class="cross" d="M96 60h8m-4 -4v8" /></g>,
+		length: <g><rect class="work" x="20" y="92" width="160" height="20" /><path class="tool" d="M78 12h44v18h-8v40h-28V30h-8z" /><path class="way" d="M100 73v15m-5 -6 5 6 5 -6M140 30v40m-4 -36 4 -4 4 4M136 66l4 4 4 -4" /></g>,
 		corner: <g transform={`translate(100 60) scale(${p.v.wayX === "-" ? -1 : 1} ${p.v.wayY === "-" ? 1 : -1}) translate(-100 -60)`}><path class="work" d="M130 10h40v102H20V84h110z" /><circle class="tool" cx="90" cy="44" r="11" /><path class="way" d="M104 44h20m-6 -4 6 4 -6 4M90 58v20m-4 -6 4 6 4 -6" /></g>,
 	};
 	return <svg class="drawing" viewBox="0 0 200 120" aria-hidden="true">{art[p.id]}</svg>;
 }
 
+/* What a touch off is about to change, and what it has made of it. */
+type Before = Record<string, number>;
+interface Felt { job: string; target: string; was: Before }
+
+function useBefore(target: string, axes: string[] | null): [Before, () => void] {
+	const held = link.state.electrode;
+	const [rows, , look] = useAsk<OffsetRow[]>("offsets", {}, LOOK_MS);
+	const [own, , lookOwn] = useAsk<{ n: number; length_mm: number; wear_mm: number }[]>("electrodes", { arg: Math.max(0, held - 1) }, LOOK_MS);
+	const row = rows?.find((r) => r.work === target), e = own?.find((x) => x.n === held);
+	const now: Before = axes ? Object.fromEntries(axes.map((a) => [a, Number(row?.[a] ?? 0)])) :
+		e ? { [t("el.length")]: e.length_mm - e.wear_mm } : {};
+	return [now, () => { look(); lookOwn(); }];
+}
+
+/* The job that feels, until it is over. */
+function useFelt(felt: Felt | null, over: () => void): string {
+	const [state, set] = useState("");
+	useEffect(() => {
+		let live = true;
+		set("");
+		const look = async () => {
+			const a = await link.ask<{ state: string; reason: string }>("show", { job: felt?.job });
+			if (!live || a.code !== 0 || !["done", "stopped", "fault", "interrupted"].includes(a.body.state)) return;
+			clearInterval(timer);
+			set(a.body.state === "done" ? "done" : a.body.reason || a.body.state);
+			over();
+		};
+		const timer = felt ? setInterval(() => void look(), 400) : 0;
+		return () => { live = false; clearInterval(timer); };
+	}, [felt?.job]);
+	return state;
+}
+
+function Changes(p: { target: string; felt: Felt | null; state: string; now: Before }): JSX.Element {
+	const { felt, now } = p, done = felt && p.state === "done";
+	const mm = (x: number | undefined) => x === undefined ? "\u2013" : number(x, 3);
+	return <div class="touched" role="status"><table class="list"><thead><tr><th scope="col">{p.target}</th><th scope="col">{t(done ? "touch.was" : "touch.now")}</th>{done && <th scope="col">{t("touch.is")}</th>}</tr></thead>
+		<tbody>{Object.keys(now).map((a) => <tr key={a}><th scope="row">{a}</th><td class="n">{mm(done ? felt.was[a] : now[a])} mm</td>{done && <td class="n"><b>{mm(now[a])}</b> mm</td>}</tr>)}</tbody></table>
+		{felt && p.state !== "done" && <p class={p.state ? "warn" : "note"}>{p.state ? t("touch.failed", { why: p.state }) : t("touch.feels")}</p>}</div>;
+}
+
 function ProbeForm(p: { probe: Probe }): JSX.Element {
-	const [v, set] = useState<Record<string, string>>(() => Object.fromEntries(p.probe.asks.map((a) => [a.key, a.preset])));
-	const whole = isWhole(p.probe, v), code = whole ? p.probe.code(v) : [];
+	const [v, set] = useState<Values>(() => Object.fromEntries(p.probe.asks.map((a) => [a.key, a.preset])));
+	const [work, into] = useState<string>("G54"), [felt, feel] = useState<Felt | null>(null);
+	const axes = p.probe.axes(v), target = axes ? work : `T${link.state.electrode}`;
+	const [now, look] = useBefore(target, axes), state = useFelt(felt, look);
+	const whole = isWhole(p.probe, v), words = whole ? [target, ...p.probe.words(v)] : [];
+	const why = !whole ? t("probe.bad") : !axes && !link.state.electrode ? t("touch.none") : link.state.loaded ? t("no.loaded") : whyNot("send");
 	const change = (key: string, text: string) => set({ ...v, [key]: text });
-	const why = !whole ? t("probe.bad") : link.state.loaded ? t("no.loaded") : whyNot("send");
+	const run = async () => {
+		const a = await link.ask("offset", { text: words.join("\n") });
+		if (a.code !== 0) say(a.reason === "connection" ? t("no.connection") : a.reason, true);
+		else feel({ job: a.reason, target, was: now });
+	};
 	return <div class="probe"><div class="probe-top"><Drawing id={p.probe.id} v={v} /><p>{t(`probe.${p.probe.id}.about`)}</p></div>
-		<div class="fields">{p.probe.asks.map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.map((c) => ({ value: c, text: c.replace("-", "\u2212") }))} /></label> :
+		{axes && <div class="field"><span>{t("touch.into")}</span><Choice label={t("touch.into")} value={work} onChange={(w) => { into(w); feel(null); }} of={WORKS.map((w) => ({ value: w, text: w }))} /></div>}
+		<div class="fields">{p.probe.asks.map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.map((c) => ({ value: c, text: c === "new" || c === "worn" ? t(`touch.${c}`) : c.replace("-", "\u2212") }))} /></label> :
 			<NumberField key={a.key} label={a.may ? `${t(a.label)} (${t("probe.nozero")})` : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
-		<details open><summary>{t("setup.make")}</summary><pre>{code.join("\n")}</pre></details>
+		<Changes target={target} felt={felt} state={state} now={now} />
 		<p class="note">{t("probe.warn")}</p>
-		<div class="keys end"><PressKey id="probe-run" class="primary" why={why} onPress={() => void sendText(`probe-${p.probe.id}.ngc`, code.join("\n") + "\n", true)}>{t("setup.run")}</PressKey></div>
+		<div class="keys end"><PressKey id="probe-run" class="primary" why={why} onPress={() => void run()}>{t("touch.run")}</PressKey></div>
 	</div>;
 }
 
