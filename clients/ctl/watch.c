@@ -6,8 +6,10 @@
 #include "screen.h"
 
 #include "plain.h"
+#include "process.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sysexits.h>
@@ -43,6 +45,22 @@ static void print_json(const struct talk_status *s)
 	fflush(stdout);
 	free(text);
 	json_decref(j);
+}
+
+#define TAKE_TOLD(name, id)	told[id] = s->told_##name;
+
+static void print_generator(const struct talk_status *s)
+{
+	double told[PROCESS_NTOLD];
+	char text[400];
+
+	for (int i = 0; i < PROCESS_NTOLD; i++)
+		told[i] = NAN;
+	PROCESS_TELLS(TAKE_TOLD)
+	if (*process_told_text(told, text, sizeof(text)))
+		printf("generator  tells %s\n", text);
+	if (*s->generator_fault)
+		printf("           its own fault: %s\n", s->generator_fault);
 }
 
 static void print_text(const struct talk_status *s)
@@ -86,6 +104,7 @@ static void print_text(const struct talk_status *s)
 	if (*s->interrupted)
 		printf("interrupted %s; edmctl show tells where\n",
 		       s->interrupted);
+	print_generator(s);
 	if (s->contour_mm >= 0)
 		printf("contour    off by %.1f um at most, predicted %.1f um\n",
 		       s->contour_mm * 1e3, s->contour_predicted_mm * 1e3);

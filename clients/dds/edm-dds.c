@@ -25,7 +25,7 @@
 					 * reader */
 
 struct options {
-	const char *machine;
+	const char *machine, *fault_words;
 	dds_domainid_t domain;
 	double hz;
 	bool once;
@@ -65,6 +65,7 @@ static int take_config(void *to, const char *path)
 	if (err < 0)
 		return err == -EINVAL ? EX_CONFIG : EX_NOINPUT;
 	o->machine = config.name;
+	o->fault_words = config.generator.fault_words;
 	o->domain = (dds_domainid_t)config.dds_domain;
 	o->hz = config.dds_hz;
 	return -1;
@@ -114,6 +115,8 @@ static int bridge_open(struct bridge *b, const struct options *o)
 	dds_entity_t topic;
 
 	watch_init(&b->watch, o->machine);
+	if (o->fault_words)
+		b->watch.fault_words = o->fault_words;
 	gethostname(b->host, sizeof(b->host) - 1);
 	tool_block_stops(&b->stops);
 

@@ -2,6 +2,8 @@
 /* table.c - machines as lines of text or as JSON */
 #include "table.h"
 
+#include "process.h"
+
 #include <jansson.h>
 #include <math.h>
 #include <stdlib.h>
@@ -137,6 +139,8 @@ static void json_words(json_t *o, const struct table_row *r)
 	json_object_set_new(o, "fault", json_string(clean(m->fault).c));
 	json_object_set_new(o, "outcome", json_string(clean(m->outcome).c));
 	json_object_set_new(o, "stand", json_string(clean(m->stand).c));
+	json_object_set_new(o, "generator_fault",
+			    json_string(clean(m->generator_fault).c));
 	json_object_set_new(o, "generator_state",
 			    json_string(generator_of(m)));
 	json_object_set_new(o, "is_on", json_boolean(m->is_on));
@@ -159,6 +163,8 @@ static void json_counts(json_t *o, const edm_MachineState *m)
 				    json_integer(count[i].n));
 }
 
+#define TOLD_ROW(name, id)	{ "told_" #name, m->told_##name },
+
 static void json_numbers(json_t *o, const edm_MachineState *m)
 {
 	const struct {
@@ -169,6 +175,7 @@ static void json_numbers(json_t *o, const edm_MachineState *m)
 		{ "length_mm", m->length_mm }, { "depth_mm", m->depth_mm },
 		{ "feed_mm_s", m->feed_mm_s }, { "gap_v", m->gap_v },
 		{ "wake_late_max_us", m->wake_late_max_us },
+		PROCESS_TELLS(TOLD_ROW)
 	};
 
 	for (size_t i = 0; i < sizeof(number) / sizeof(number[0]); i++)

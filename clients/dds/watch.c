@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* watch.c - one machine, seen through its shared memory */
+#include "config.h"
 #include "faults.h"
 #include "stands.h"
 #include "watch.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,7 +15,7 @@
 
 void watch_init(struct watch *w, const char *machine)
 {
-	*w = (struct watch) { .open_error = -ENOENT };
+	*w = (struct watch) { .open_error = -ENOENT, .fault_words = "none" };
 	snprintf(w->machine, sizeof(w->machine), "%s", machine);
 }
 
@@ -112,6 +114,18 @@ static void fill_sums(const struct shm_snapshot *s, edm_MachineState *m)
 	m->wake_late_max_us = (double)s->wake_late_max_ns * 1e-3;
 }
 
+#define FILL_TOLD(name, id)	m->told_##name = here ? s->told[id] : NAN;
+
+static void fill_generator(const struct watch *w, bool here,
+			   edm_MachineState *m)
+{
+	const struct shm_snapshot *s = &w->last;
+
+	PROCESS_TELLS(FILL_TOLD)
+	config_fault_text(w->fault_words, m->told_fault, m->generator_fault,
+			  sizeof(m->generator_fault));
+}
+
 void watch_look(struct watch *w, int64_t now_ns, edm_MachineState *ret)
 {
 	const char *state = look(w, now_ns);
@@ -125,6 +139,7 @@ void watch_look(struct watch *w, int64_t now_ns, edm_MachineState *ret)
 		 w->heard && s->fault ? fault_name(s->fault) : "none");
 	snprintf(ret->outcome, sizeof(ret->outcome), "%s",
 		 shm_outcome_name(w->heard ? s->outcome : SHM_OUTCOME_NONE));
+	fill_generator(w, w->heard && here, ret);
 	if (!w->heard)
 		return;
 

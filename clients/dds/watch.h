@@ -16,6 +16,7 @@
 /* Placed by the caller, filled by watch_init(); fields are private. */
 struct watch {
 	char machine[SHM_NAME_MAX];
+	const char *fault_words;	/* of [generator], lent */
 	const struct shm_status *status;	/* NULL: not open */
 	uint32_t instance;			/* of the edmd in `last` */
 	struct shm_snapshot last;

@@ -75,7 +75,7 @@ static int check_way(struct check *q, int field, bool told)
 	const char *wrong;
 	char key[24];
 
-	if (strcmp(text, "auto") == 0)
+	if (!*text || strcmp(text, "auto") == 0)
 		return 0;
 	key_name(field, told, key, sizeof(key));
 	wrong = config_way_read(text, field, &w);
@@ -165,6 +165,19 @@ static bool is_count(const struct check *q, const struct config_way *w)
 	       w->bit < 16 && w->bit + w->bits > 8;
 }
 
+/* Registers are one row of bits. */
+static bool have_in_common(const struct config_way *a,
+			   const struct config_way *b)
+{
+	const bool registers = a->kind == WAY_REGISTER;
+	const uint32_t at = registers ? 16u * a->id + a->bit : a->bit;
+	const uint32_t other = registers ? 16u * b->id + b->bit : b->bit;
+
+	return a->kind == b->kind && (registers || a->id == b->id) &&
+	       a->input == b->input && at < other + b->bits &&
+	       other < at + a->bits;
+}
+
 static int check_bits(struct check *q, int field, bool told)
 {
 	struct config_way w, x;
@@ -175,11 +188,8 @@ static int check_bits(struct check *q, int field, bool told)
 		return 0;
 	key_name(field, told, key, sizeof(key));
 	for (int i = 0; i < field; i++) {
-		if (told && i >= INTERP_NGENERATOR)
-			break;
 		config_way(q->c, i, told, &x);
-		if (x.kind != w.kind || x.id != w.id || x.input != w.input ||
-		    x.bit + x.bits <= w.bit || w.bit + w.bits <= x.bit)
+		if (!have_in_common(&x, &w))
 			continue;
 		interp_diag_say(q->diag, "generator.%s and generator.%s%s "
 				"have bits of %s %u in common; a place of its "
@@ -215,8 +225,6 @@ static int check_ids(struct check *q, int field, bool told)
 	struct config_way w;
 	char key[24];
 
-	if (told && field >= INTERP_NGENERATOR)
-		return 0;
 	config_way(q->c, field, told, &w);
 	return w.kind == WAY_CAN &&
 	       check_id(q, key_name(field, told, key, sizeof(key)), w.id);
@@ -233,6 +241,18 @@ static int check_by_hand(struct check *q)
 			"on_us off_us polarity ignition_v iso sense pump, "
 			"those that a person sets", odd);
 	return refuse(q, "by_hand");
+}
+
+static int check_fault_words(struct check *q)
+{
+	const char *wrong = config_fault_read(q->c->generator.fault_words);
+
+	if (!wrong)
+		return 0;
+	interp_diag_say(q->diag, "generator.fault_words \"%.60s\" %s; none, "
+			"or numbers and words, as 1 no water, 2 too warm",
+			q->c->generator.fault_words, wrong);
+	return refuse(q, "fault_words");
 }
 
 /* As for [gpio] spark: something must end the sparks after edmd is gone. */
@@ -342,21 +362,19 @@ int config_check_generator(const struct machine_config *c,
 	struct check q = { c, lines, diag };
 
 	if (check_interface(&q) || check_by_hand(&q) ||
+	    check_fault_words(&q) ||
 	    check_id(&q, "can_id", (uint32_t)c->generator.can_id))
 		return -EINVAL;
-	for (int i = 0; i < PROCESS_NFIELDS; i++) {
-		const bool tells = i < INTERP_NGENERATOR;
-
-		if (check_way(&q, i, false) ||
-		    (tells && check_way(&q, i, true)))
+	for (int i = 0; i < PROCESS_NTOLD; i++)
+		if ((i < PROCESS_NFIELDS && check_way(&q, i, false)) ||
+		    check_way(&q, i, true))
 			return -EINVAL;
-	}
-	for (int i = 0; i < PROCESS_NFIELDS; i++) {
-		const bool tells = i < INTERP_NGENERATOR;
+	for (int i = 0; i < PROCESS_NTOLD; i++) {
+		const bool asked = i < PROCESS_NFIELDS;
 
-		if (check_lines(&q, i) || check_bits(&q, i, false) ||
-		    (tells && check_bits(&q, i, true)) ||
-		    check_ids(&q, i, false) || check_ids(&q, i, true))
+		if ((asked && (check_lines(&q, i) || check_bits(&q, i, false) ||
+			       check_ids(&q, i, false))) ||
+		    check_bits(&q, i, true) || check_ids(&q, i, true))
 			return -EINVAL;
 	}
 	return check_modbus(&q) ||

@@ -82,7 +82,8 @@ struct config_generator {
 					 * has a place of its own; 0: none */
 	char field[PROCESS_NFIELDS][CONFIG_WAY_MAX];	/* as
 					 * config_way_read() */
-	char told[INTERP_NGENERATOR][CONFIG_WAY_MAX];
+	char told[PROCESS_NTOLD][CONFIG_WAY_MAX];	/* "": no such key */
+	char fault_words[256];		/* config_fault_text() */
 	char by_hand[96];		/* names of fields; "none" */
 	double settle_ms, polarity_ms;
 	double silent_ms, confirm_s;
@@ -430,6 +431,7 @@ struct config_way {
 	 * a request, from 0. */
 	uint16_t id;
 	bool input;			/* an input register, to be read only */
+	bool low_first;			/* of the two of a count of 32 bits */
 	uint8_t bit, bits;		/* first bit of 64, or 16; and how
 					 * many */
 	double scale;			/* of one count; 0: it is a code */
@@ -495,6 +497,14 @@ uint32_t config_generator_frames(const struct machine_config *c,
 int config_generator_takes(const struct machine_config *c,
 			   const struct interp_tech *t, const char *who,
 			   struct interp_diag *diag);
+
+#define CONFIG_FAULT_MAX	64
+
+/** config_fault_text() - what a generator tells as its own fault in words, by
+ *  @words of [generator] fault_words, as "3 no water", or only its number; ""
+ *  for none, and for NAN.  Return: @buf. */
+const char *config_fault_text(const char *words, double fault, char *buf,
+			      size_t size);
 
 /** config_line_name() - its key: "step_X", "spark", ... */
 const char *config_line_name(int line);

@@ -75,7 +75,9 @@ static void by_itself(const struct machine_config *c, int field,
 static void told_by_itself(const struct machine_config *c, int field,
 			   struct config_way *ret)
 {
-	config_way(c, field, false, ret);
+	*ret = (struct config_way) { .kind = WAY_NONE };
+	if (field < PROCESS_NFIELDS)
+		config_way(c, field, false, ret);
 	if (ret->kind != WAY_REGISTER)
 		*ret = (struct config_way) { .kind = WAY_NONE };
 }
@@ -119,17 +121,17 @@ static void add_id(const struct config_way *w, uint16_t *id, uint32_t *n)
 uint32_t config_generator_frames(const struct machine_config *c,
 				 const char *name)
 {
-	uint16_t id[PROCESS_NFIELDS + INTERP_NGENERATOR];
+	uint16_t id[PROCESS_NFIELDS + PROCESS_NTOLD];
 	struct config_way w;
 	uint32_t n = 0;
 
-	for (int i = 0; i < PROCESS_NFIELDS; i++) {
-		config_way(c, i, false, &w);
-		add_id(&w, id, &n);
-		if (i < INTERP_NGENERATOR) {
-			config_way(c, i, true, &w);
+	for (int i = 0; i < PROCESS_NTOLD; i++) {
+		if (i < PROCESS_NFIELDS) {
+			config_way(c, i, false, &w);
 			add_id(&w, id, &n);
 		}
+		config_way(c, i, true, &w);
+		add_id(&w, id, &n);
 	}
 	return strcmp(c->generator.can_interface, name) == 0 ? n : 0;
 }

@@ -210,6 +210,9 @@ void config_way_all(int field, bool by_hand, struct process_delivers *ret);
  *  word that is none, or "". */
 uint32_t config_hand_read(const char *text, char odd[CONFIG_WAY_WORD]);
 
+/** config_fault_read() - what is wrong with fault_words, or NULL. */
+const char *config_fault_read(const char *words);
+
 /** config_generator_gpio() - does [gpio] have a line for this field? */
 bool config_generator_gpio(const struct machine_config *c, int field);
 

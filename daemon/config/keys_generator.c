@@ -22,6 +22,11 @@ static const char *parity_word(int i)
 
 #define WAY(key, i, what) \
 	STRING(GENERATOR, key, "auto", generator.field[i], what)
+#define SUM(key, i, what) \
+	STRING(GENERATOR, "told_" key, "none", generator.told[PROCESS_##i], \
+	       what ", as can 1012 byte 0 bits 32, as input 40 bits 32: two " \
+	       "registers, the high one first, or as input 40 bits 32 first " \
+	       "low")
 #define TOLD(key, i) \
 	STRING(GENERATOR, "told_" key, "auto", \
 	       generator.told[INTERP_TECH_##i], \
@@ -61,6 +66,17 @@ static const struct config_key row[] = {
 	TOLD("peak_a", PEAK_A), TOLD("on_us", ON_US), TOLD("off_us", OFF_US),
 	TOLD("ignition_v", IGNITION_V), TOLD("polarity", POLARITY),
 	TOLD("iso", ISO),
+	SUM("opens", OPENS, "where it counts pulses that did not ignite"),
+	SUM("sparks", SPARKS, "where it counts those that ignited well"),
+	SUM("arcs", ARCS, "where it counts arcs"),
+	SUM("shorts", SHORTS, "where it counts shorts"),
+	SUM("energy_j", ENERGY_J,
+	    "where it sums the energy of the discharges; scale: J of a count"),
+	STRING(GENERATOR, "told_fault", "none", generator.told[PROCESS_FAULT],
+	       "where it tells the number of its own fault, 0: none, as "
+	       "can 1012 byte 4 bits 8, or as input 45"),
+	STRING(GENERATOR, "fault_words", "none", generator.fault_words,
+	       "its own faults in words, as 1 no water, 2 too warm"),
 	STRING(GENERATOR, "by_hand", "none", generator.by_hand,
 	       "fields of a condition that a person sets at the generator, as "
 	       "on_us off_us: the job stands at each change and asks"),

@@ -49,8 +49,8 @@ static bool number(const char *word, double *ret)
 /* On or off; polarity is one of these too. */
 static bool is_switch(int field)
 {
-	return field >= INTERP_NGENERATOR || field == INTERP_TECH_POLARITY ||
-	       field == INTERP_TECH_ISO;
+	return (field >= INTERP_NGENERATOR && field < PROCESS_NFIELDS) ||
+	       field == INTERP_TECH_POLARITY || field == INTERP_TECH_ISO;
 }
 
 static double range_min(int field)
@@ -60,7 +60,8 @@ static double range_min(int field)
 
 static double range_max(int field)
 {
-	return field < INTERP_NGENERATOR ? interp_tech_field[field].max : 1;
+	return field < INTERP_NGENERATOR ? interp_tech_field[field].max :
+	       field < PROCESS_NFIELDS ? 1 : (double)INFINITY;
 }
 
 static void give(struct process_delivers *d, double value)
@@ -176,6 +177,7 @@ static const char *read_way_lines(struct words *w, int field,
 struct place {
 	double byte, bit;		/* -1: not said */
 	int bytes, bit_max, bits_max;
+	bool wide;			/* two registers may be one number */
 };
 
 static bool is_whole(double v, double min, double max)
@@ -192,11 +194,19 @@ static bool read_pair(const char *key, double v, struct place *at,
 		at->bit = v;
 	else if (strcmp(key, "bits") == 0 && is_whole(v, 1, at->bits_max))
 		ret->bits = (uint8_t)v;
+	else if (strcmp(key, "bits") == 0 && at->wide && v == 32)
+		ret->bits = 32;
 	else if (strcmp(key, "scale") == 0 && v > 0)
 		ret->scale = v;
 	else
 		return false;
 	return true;
+}
+
+static bool is_end(const char *word, bool *ret_low)
+{
+	*ret_low = strcmp(word, "low") == 0;
+	return *ret_low || strcmp(word, "high") == 0;
 }
 
 static bool read_place(struct words *w, struct place *at,
@@ -207,6 +217,9 @@ static bool read_place(struct words *w, struct place *at,
 
 	while (next(w) && strcmp(w->word, "codes") != 0) {
 		memcpy(key, w->word, sizeof(key));
+		if (strcmp(key, "first") == 0 && at->wide && next(w) &&
+		    is_end(w->word, &ret->low_first))
+			continue;
 		if (!next(w) || !number(w->word, &v) ||
 		    !read_pair(key, v, at, ret))
 			return false;
@@ -241,7 +254,7 @@ static const char *give_place(struct config_way *w, int field)
 
 static const char *read_can(struct words *w, int field, struct config_way *ret)
 {
-	struct place at = { -1, 0, 8, 7, 32 };
+	struct place at = { -1, 0, 8, 7, 32, false };
 	double id;
 
 	if (!next(w) || !number(w->word, &id) || !is_whole(id, 1, 2047))
@@ -264,7 +277,7 @@ static const char *read_can(struct words *w, int field, struct config_way *ret)
 static const char *read_register(struct words *w, int field,
 				 struct config_way *ret)
 {
-	struct place at = { -1, 0, 0, 15, 16 };
+	struct place at = { -1, 0, 0, 15, 16, field >= PROCESS_NFIELDS };
 	const bool input = strcmp(w->word, "input") == 0;
 	const char *wrong;
 	double id;
@@ -278,16 +291,23 @@ static const char *read_register(struct words *w, int field,
 	};
 	if (!read_place(w, &at, ret))
 		return "has a word that is none of bit 0 to 15, bits 1 to 16, "
-		       "scale above 0, codes";
+		       "scale above 0, codes; of a sum also bits 32, first "
+		       "high or low";
+	if (ret->low_first && ret->bits != 32)
+		return "has an order, and one register";
 	ret->bit = (uint8_t)at.bit;
 	if (at.bit > 0 && ret->bits == NATURAL_BITS)
 		ret->bits = (uint8_t)(NATURAL_BITS - ret->bit);
-	if (ret->bit + ret->bits > 16)
+	if (ret->bit + ret->bits > 16 && (ret->bit || ret->bits != 32))
 		return "goes beyond the sixteenth bit";
+	if (ret->bits == 32 && ret->id == 65535)
+		return "goes beyond the last register";
 	if (!*w->word)
 		return give_place(ret, field);
 	if (is_switch(field))
 		return "has codes and is of a field that is on or off";
+	if (field >= PROCESS_NFIELDS)
+		return "has codes and is a sum or a number";
 	ret->scale = 0;
 	wrong = read_codes(w, (uint32_t)fmin(exp2(ret->bits),
 					     PROCESS_VALUES_MAX), ret);
@@ -364,4 +384,57 @@ uint32_t config_hand_read(const char *text, char odd[CONFIG_WAY_WORD])
 		fields |= i < PROCESS_SPARK ? 1u << i : 0;
 	}
 	return fields;
+}
+
+/* -- A generator's own faults ---------------------------------------------- */
+
+/* The next one: its number and its words.  Return: false at the end, or where
+ * it is none: @ret then is 0. */
+static bool next_fault(const char **at, long *ret, int *ret_n,
+		       const char **ret_words)
+{
+	char *end;
+
+	*at += strspn(*at, " \t,");
+	*ret = strtol(*at, &end, 10);
+	if (**at == '\0' || end == *at || *ret < 1 || *ret > 65535) {
+		*ret = 0;
+		return false;
+	}
+	*ret_words = end + strspn(end, " \t");
+	*ret_n = (int)strcspn(*ret_words, ",");
+	*at = *ret_words + *ret_n;
+	return true;
+}
+
+const char *config_fault_read(const char *words)
+{
+	const char *text;
+	long fault;
+	int n;
+
+	if (strcmp(words, "none") == 0)
+		return NULL;
+	while (next_fault(&words, &fault, &n, &text))
+		if (n == 0 || n > CONFIG_FAULT_MAX - 8)
+			return "has a number without words, or with more than "
+			       "56 bytes of them";
+	return *words ? "has words without a number of 1 to 65535 before them" :
+			NULL;
+}
+
+const char *config_fault_text(const char *words, double fault, char *buf,
+			      size_t size)
+{
+	const char *text;
+	long at;
+	int n;
+
+	*buf = '\0';
+	if (fault > 0)
+		snprintf(buf, size, "%.0f", fault);
+	while (next_fault(&words, &at, &n, &text))
+		if ((double)at == fault)
+			snprintf(buf, size, "%ld %.*s", at, n, text);
+	return buf;
 }

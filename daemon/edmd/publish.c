@@ -30,6 +30,8 @@ SAME(SHM_PROBE + 1, CYCLE_NSTATES);
 SAME(SHM_NAXES, INTERP_NAXES);
 SAME(SHM_NAXES, IO_NAXES);
 SAME(SHM_NGENERATOR, INTERP_NGENERATOR);
+SAME(SHM_NTOLD, PROCESS_NTOLD);
+SAME(IO_NTOLD, PROCESS_NTOLD);
 SAME(SHM_SETS_MAX, CONDITIONS_SETS_MAX);
 SAME(SHM_DONE, ANSWER_DONE);
 SAME(SHM_NO_PROGRAM, ANSWER_NO_PROGRAM);
@@ -295,7 +297,9 @@ static void snapshot_generator(const struct cycle *c, struct shm_snapshot *s)
 	const struct asking *a = &c->asking;
 
 	memcpy(s->asked, a->now, sizeof(s->asked));
-	memcpy(s->told, a->says.told, sizeof(s->told));
+	for (int i = 0; i < SHM_NTOLD; i++)
+		s->told[i] = a->says.tells >> i & 1 ? a->says.told[i] :
+						      (double)NAN;
 	s->tells = a->says.tells;
 	s->has_asked = a->has;
 }

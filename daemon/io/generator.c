@@ -52,10 +52,11 @@ static void put_values(const struct generator_note *n, const char *how,
 		 value_text(n->told, told));
 }
 
-static void put_text(const struct generator_note *n, char *buf, size_t size)
+static void put_text(const struct generator_note *n, const char *words,
+		     char *buf, size_t size)
 {
 	const char *name = process_name(n->field);
-	char asked[24];
+	char asked[24], own[CONFIG_FAULT_MAX];
 
 	switch (n->kind) {
 	case GENERATOR_SILENT:
@@ -67,6 +68,10 @@ static void put_text(const struct generator_note *n, char *buf, size_t size)
 		break;
 	case GENERATOR_LATE:
 		put_values(n, "is not in force in confirm_s", buf, size);
+		break;
+	case GENERATOR_FAULT:
+		snprintf(buf, size, "generator: its own fault %s",
+			 config_fault_text(words, n->code, own, sizeof(own)));
 		break;
 	case GENERATOR_LINES_LOST:
 		snprintf(buf, size, "generator: its lines do not answer");
@@ -100,7 +105,7 @@ static bool generator_note(void *self, char *buf, size_t size)
 
 	if (taken == atomic_load(&g->put))
 		return g->axes.note && g->axes.note(g->axes.self, buf, size);
-	put_text(&g->notes[taken % GENERATOR_NOTES], buf, size);
+	put_text(&g->notes[taken % GENERATOR_NOTES], g->fault_words, buf, size);
 	atomic_store(&g->taken, taken + 1);
 	return true;
 }
@@ -141,8 +146,8 @@ static bool tells(const struct generator *g, int field)
 /* A slave that tells nothing still answers. */
 static bool answers(const struct generator *g, int field)
 {
-	return (field < INTERP_NGENERATOR && tells(g, field)) ||
-	       g->way[field].kind == WAY_REGISTER;
+	return tells(g, field) || (field < PROCESS_NFIELDS &&
+				   g->way[field].kind == WAY_REGISTER);
 }
 
 static bool agrees(const struct generator *g, int field)
@@ -173,7 +178,7 @@ static bool is_silent(struct generator *g)
 {
 	bool silent = false;
 
-	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+	for (int i = 0; i < PROCESS_NTOLD; i++) {
 		if (!answers(g, i) || g->age[i] <= g->silent)
 			continue;
 		silent = true;
@@ -187,6 +192,10 @@ static void look(struct generator *g)
 	const bool silent = is_silent(g);
 	const int odd = odd_one(g);
 
+	if (g->heard[PROCESS_FAULT] > 0)
+		trouble(g, &(struct generator_note) {
+			.kind = GENERATOR_FAULT, .field = PROCESS_FAULT,
+			.code = (int)g->heard[PROCESS_FAULT] });
 	if (odd < 0 && !silent) {
 		g->says.in_force = g->asked;
 		g->waited = 0;
@@ -197,6 +206,16 @@ static void look(struct generator *g)
 	} else if (odd >= 0 && ++g->waited > g->confirm) {
 		trouble_of(g, GENERATOR_LATE, odd);
 	}
+}
+
+/* What is told while it is dark is of sparks before that. */
+static void hand_energy_on(struct generator *g, struct io_inputs *in)
+{
+	if (!tells(g, PROCESS_ENERGY_J))
+		return;
+	in->energy_valid = !isnan(g->heard[PROCESS_ENERGY_J]);
+	in->energy_j = g->value[PROCESS_SPARK] > 0 ? g->energy_j : 0;
+	g->energy_j -= in->energy_j;
 }
 
 static void generator_read(void *self, struct io_inputs *in)
@@ -210,10 +229,37 @@ static void generator_read(void *self, struct io_inputs *in)
 	if (g->modbus)
 		g->modbus_read(g);
 	look(g);
+	hand_energy_on(g, in);
 	memcpy(g->says.told, g->heard, sizeof(g->says.told));
 	in->generator = g->says;
 	/* Where the bus is the drives' too, it is their trouble. */
 	in->generator.trouble = g->says.trouble || (g->down && !g->ill);
+}
+
+/* More than half of its range at once: it has begun anew. */
+static void run_on(struct generator *g, int field, uint64_t count)
+{
+	const struct config_way *w = &g->told[field];
+	const uint64_t bits = (UINT64_C(1) << w->bits) - 1;
+	const uint64_t more = (count - g->count[field]) & bits;
+	const bool first = isnan(g->heard[field]);
+	const double add = first || more > bits / 2 ? 0 :
+			   (double)more * w->scale;
+
+	g->heard[field] = first ? 0 : g->heard[field] + add;
+	if (field == PROCESS_ENERGY_J)
+		g->energy_j += add;
+}
+
+void generator_hears(struct generator *g, int field, uint64_t count)
+{
+	if (process_is_sum(field))
+		run_on(g, field, count);
+	else
+		g->heard[field] = generator_value(&g->told[field], field,
+						  count);
+	g->count[field] = count;
+	g->age[field] = 0;
 }
 
 /* -- What it is asked for -------------------------------------------------- */
@@ -346,7 +392,8 @@ struct generator *generator_attach(struct io_machine *m,
 		config_way(c, i, false, &g->way[i]);
 		g->value[i] = i < INTERP_NGENERATOR ? (double)NAN : 0;
 	}
-	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+	g->fault_words = c->generator.fault_words;
+	for (int i = 0; i < PROCESS_NTOLD; i++) {
 		config_way(c, i, true, &g->told[i]);
 		g->says.tells |= tells(g, i) ? 1u << i : 0;
 		g->heard[i] = (double)NAN;

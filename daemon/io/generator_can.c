@@ -108,15 +108,14 @@ void generator_can_write(struct generator *g)
 
 static void hear(struct generator *g, const struct can_msg *m)
 {
-	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+	for (int i = 0; i < PROCESS_NTOLD; i++) {
 		const struct config_way *w = &g->told[i];
 
 		if (w->kind != WAY_CAN || w->id != m->id ||
 		    w->bit + w->bits > 8 * m->len)
 			continue;
-		g->heard[i] = generator_value(w, i, (bytes_get(m->data) &
-						     mask_of(w)) >> w->bit);
-		g->age[i] = 0;
+		generator_hears(g, i, (bytes_get(m->data) & mask_of(w)) >>
+				      w->bit);
 	}
 }
 
@@ -124,7 +123,7 @@ void generator_can_read(struct generator *g)
 {
 	struct can_msg m = { 0 };
 
-	for (int i = 0; i < INTERP_NGENERATOR; i++)
+	for (int i = 0; i < PROCESS_NTOLD; i++)
 		g->age[i] += g->age[i] < UINT32_MAX;
 	for (int i = 0; i < RX_MAX; i++) {
 		switch (can_socket_receive(g->fd, &m)) {

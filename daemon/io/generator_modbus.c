@@ -29,6 +29,7 @@
 #define TRIES		8
 #define AGAIN_MS	200		/* between two tries to connect */
 #define NONE		UINT32_MAX
+#define REGISTERS_MOST	(2 * PROCESS_NTOLD)	/* in a request */
 
 /* What the cycle asks for. */
 struct wish {
@@ -46,7 +47,7 @@ struct word {
 	uint32_t refused;		/* version with a refusal, NONE */
 	uint16_t field, exception;	/* ... of it */
 	int32_t err;			/* no link: errno; 0: it is there */
-	uint16_t count[INTERP_NGENERATOR];
+	uint32_t count[PROCESS_NTOLD];
 };
 
 struct wish_slot {
@@ -73,7 +74,7 @@ struct bank {
 
 struct generator_modbus {
 	struct config_modbus_at at;
-	struct config_way way[PROCESS_NFIELDS], told[INTERP_NGENERATOR];
+	struct config_way way[PROCESS_NFIELDS], told[PROCESS_NTOLD];
 	int64_t every_ns, settle_ns;
 	uint32_t tells;
 	/* Between the two. */
@@ -302,30 +303,46 @@ static int write_due(struct generator_modbus *m)
 
 /* -- The thread: read ------------------------------------------------------ */
 
+/* A count of 32 bits has two. */
+static int registers_of(const struct config_way *w)
+{
+	return w->bits > 16 ? 2 : 1;
+}
+
 static bool is_next(const struct config_way *a, const struct config_way *b)
 {
-	return a->input == b->input && (b->id == a->id || b->id == a->id + 1);
+	return a->input == b->input && b->id <= a->id + registers_of(a);
 }
 
 static bool is_odd(struct generator_modbus *m, int field)
 {
 	const struct config_way *w = &m->way[field], *t = &m->told[field];
 	const struct bank *b = &m->bank;
-	const int at = bank_find(b, w->id);
+	int at;
 
 	if (w->kind != WAY_REGISTER || t->input || t->id != w->id ||
 	    t->bit != w->bit || t->bits != w->bits)
 		return false;
+	at = bank_find(b, w->id);
 	return at >= 0 && b->kept[at] &&
 	       ((unsigned int)b->image[at] >> w->bit &
 		((1u << w->bits) - 1)) != m->word.count[field];
 }
 
+static uint32_t bits_of(const struct config_way *w, const uint16_t *got)
+{
+	if (w->bits > 16)
+		return w->low_first ? got[0] | (uint32_t)got[1] << 16 :
+				      got[1] | (uint32_t)got[0] << 16;
+	return (uint32_t)got[0] >> w->bit & ((1u << w->bits) - 1);
+}
+
 static int read_run(struct generator_modbus *m, const uint8_t *field, int n)
 {
 	const struct config_way *first = &m->told[field[0]];
-	const int span = m->told[field[n - 1]].id - first->id + 1;
-	uint16_t got[INTERP_NGENERATOR];
+	const struct config_way *last = &m->told[field[n - 1]];
+	const int span = last->id - first->id + registers_of(last);
+	uint16_t got[REGISTERS_MOST];
 	const int err = outcome(m, first->input ?
 		modbus_read_input_registers(m->link, first->id, span, got) :
 		modbus_read_registers(m->link, first->id, span, got));
@@ -340,10 +357,9 @@ static int read_run(struct generator_modbus *m, const uint8_t *field, int n)
 			m->bank.read[at] = got[w->id - first->id];
 			m->bank.was_read[at] = true;
 		}
-		m->word.count[field[i]] = (uint16_t)
-			((unsigned int)got[w->id - first->id] >> w->bit &
-			 ((1u << w->bits) - 1));
-		m->odd = is_odd(m, field[i]) || m->odd;
+		m->word.count[field[i]] = bits_of(w, got + w->id - first->id);
+		m->odd = (field[i] < PROCESS_NFIELDS && is_odd(m, field[i])) ||
+			 m->odd;
 	}
 	return err;
 }
@@ -354,11 +370,11 @@ static uint32_t place_in(const struct config_way *w)
 }
 
 static int order(const struct generator_modbus *m,
-		 uint8_t ret[INTERP_NGENERATOR])
+		 uint8_t ret[PROCESS_NTOLD])
 {
 	int n = 0;
 
-	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+	for (int i = 0; i < PROCESS_NTOLD; i++) {
 		int at = n;
 
 		if (!(m->tells >> i & 1))
@@ -374,7 +390,7 @@ static int order(const struct generator_modbus *m,
 
 static int read_told(struct generator_modbus *m)
 {
-	uint8_t field[INTERP_NGENERATOR];
+	uint8_t field[PROCESS_NTOLD];
 	const int n = order(m, field);
 	int err = 0, to;
 
@@ -536,12 +552,10 @@ static void take_word(struct generator *g, const struct word *w)
 		return;
 	g->modbus->heard = w->number;
 	g->taken_version = w->version;
-	for (int i = 0; i < PROCESS_NFIELDS; i++)
-		g->age[i] = 0;
-	for (int i = 0; i < INTERP_NGENERATOR; i++)
+	memset(g->age, 0, sizeof(g->age));
+	for (int i = 0; i < PROCESS_NTOLD; i++)
 		if (g->modbus->tells >> i & 1)
-			g->heard[i] = generator_value(&g->told[i], i,
-						      w->count[i]);
+			generator_hears(g, i, w->count[i]);
 }
 
 static void modbus_read(struct generator *g)
@@ -551,7 +565,7 @@ static void modbus_read(struct generator *g)
 	const uint64_t next = __atomic_load_n(&m->word_next, __ATOMIC_ACQUIRE);
 	struct word w;
 
-	for (int i = 0; i < PROCESS_NFIELDS; i++)
+	for (int i = 0; i < PROCESS_NTOLD; i++)
 		g->age[i] += g->age[i] < UINT32_MAX;
 	if (next == m->seen || !stamped_last(&words, TRIES, &w))
 		return;
@@ -607,7 +621,7 @@ static int check_port(const struct generator_modbus *m,
 }
 
 /* The bytes of the longest request and its answer, 11 bits each. */
-#define LONGEST_BYTES	(9 + 2 * PROCESS_NFIELDS + 8)
+#define LONGEST_BYTES	(9 + 2 * REGISTERS_MOST + 8)
 
 static void set_times(struct generator_modbus *m,
 		      const struct config_generator *g)
@@ -648,7 +662,7 @@ static struct generator_modbus *modbus_make(struct generator *g,
 	config_modbus_read(c->generator.modbus, &m->at);
 	memcpy(m->way, g->way, sizeof(m->way));
 	memcpy(m->told, g->told, sizeof(m->told));
-	for (int i = 0; i < INTERP_NGENERATOR; i++)
+	for (int i = 0; i < PROCESS_NTOLD; i++)
 		if (m->told[i].kind == WAY_REGISTER)
 			m->tells |= 1u << i;
 	for (int i = 0; i < PROCESS_NFIELDS; i++)

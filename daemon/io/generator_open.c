@@ -19,13 +19,13 @@ static int refuse(struct interp_diag *diag, int err, const char *interface)
 /* What it tells; the socket hears nothing else. */
 static int bus_open(const struct machine_config *c, struct interp_diag *diag)
 {
-	struct can_hear hear[INTERP_NGENERATOR];
+	struct can_hear hear[PROCESS_NTOLD];
 	const char *interface = c->generator.can_interface;
 	struct config_way w;
 	size_t n = 0;
 	int fd;
 
-	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+	for (int i = 0; i < PROCESS_NTOLD; i++) {
 		config_way(c, i, true, &w);
 		if (w.kind == WAY_CAN)
 			hear[n++] = (struct can_hear) { w.id, 0x7ff };

@@ -25,7 +25,8 @@ struct generator_frame {
 enum generator_note_kind {
 	GENERATOR_SILENT, GENERATOR_DIFFERS, GENERATOR_LATE,
 	GENERATOR_LINES_LOST, GENERATOR_BUS_DOWN, GENERATOR_BUS_BACK,
-	GENERATOR_REFUSES, GENERATOR_LINK_DOWN, GENERATOR_LINK_BACK
+	GENERATOR_REFUSES, GENERATOR_LINK_DOWN, GENERATOR_LINK_BACK,
+	GENERATOR_FAULT
 };
 
 struct generator_note {
@@ -33,7 +34,7 @@ struct generator_note {
 	int field;
 	double asked, told;
 	int code;			/* REFUSES: the exception; LINK:
-					 * errno */
+					 * errno; FAULT: its number */
 };
 
 struct generator_lines;
@@ -41,20 +42,23 @@ struct generator_modbus;
 
 struct generator {
 	struct io_machine axes;		/* behind it */
-	struct config_way way[PROCESS_NFIELDS], told[INTERP_NGENERATOR];
+	struct config_way way[PROCESS_NFIELDS], told[PROCESS_NTOLD];
 	double value[PROCESS_NFIELDS];	/* as asked last; NAN: its own */
 	uint32_t asked;			/* io_outputs.asked of these */
 	uint32_t refresh, silent, confirm;	/* periods */
 	struct io_generator says;
 	uint32_t waited;		/* periods for its word */
+	const char *fault_words;	/* config_fault_words() */
 	bool ill;			/* the axes: no sparks */
 	/* CAN; fd -1: none. */
 	int fd;
 	struct generator_frame frame[GENERATOR_FRAMES];
 	uint32_t nframes;
 	bool down;
-	double heard[INTERP_NGENERATOR];	/* NAN: nothing yet */
-	uint32_t age[PROCESS_NFIELDS];	/* periods */
+	double heard[PROCESS_NTOLD];	/* NAN: nothing yet */
+	uint64_t count[PROCESS_NTOLD];	/* ... as bits */
+	uint32_t age[PROCESS_NTOLD];	/* periods */
+	double energy_j;		/* told and not handed on yet */
 	/* Lines; NULL: none. */
 	struct generator_lines *lines;
 	bool (*lines_write)(struct generator *g);
@@ -91,6 +95,9 @@ uint64_t generator_count(const struct config_way *w, int field, double value);
 
 /** generator_value() - the value of these bits. */
 double generator_value(const struct config_way *w, int field, uint64_t count);
+
+/** generator_hears() - it told these bits for field @field. */
+void generator_hears(struct generator *g, int field, uint64_t count);
 
 /** generator_refused() - it answered field @field with this exception. */
 void generator_refused(struct generator *g, int field, int exception);

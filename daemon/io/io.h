@@ -20,6 +20,7 @@
 #include <stdint.h>
 
 #define IO_NAXES	8		/* as enum interp_axis */
+#define IO_NTOLD	15		/* PROCESS_NTOLD of words/process.h */
 
 /* How the pulses of the last period came out, as parts of 1. */
 struct io_shares {
@@ -59,10 +60,11 @@ struct io_generator {
 					 * it can tell */
 	bool trouble;			/* until a reset, or until something
 					 * else is asked */
-	uint32_t tells;			/* a bit per field of pulse whose value
-					 * it tells */
-	double told[INTERP_NGENERATOR];	/* ... which is this; NAN: nothing was
-					 * heard yet */
+	uint32_t tells;			/* a bit per field of enum process_id
+					 * that it tells */
+	double told[IO_NTOLD];		/* ... which is this; NAN: nothing was
+					 * heard yet.  Sums: since edmd was
+					 * there */
 };
 
 /* What the machine says, once a period. */

@@ -329,10 +329,23 @@ void queue_event(struct jobs *j, const struct shm_event *e)
 	queue_ended_event(q, e);
 }
 
+/* " (3 no water)", if the generator says so itself; else "". */
+static const char *own_fault(const struct jobs *j, char *to, size_t size)
+{
+	const struct shm_snapshot *s = &j->link.snap;
+	char text[CONFIG_FAULT_MAX];
+
+	config_fault_text(j->config->generator.fault_words,
+			  s->told[PROCESS_FAULT], text, sizeof(text));
+	snprintf(to, size, *text ? " (%s)" : "%s", text);
+	return to;
+}
+
 static void follow_fault(struct jobs *j)
 {
 	struct queue *q = &j->queue;
 	const char *fault = fault_name(q->snap.fault);
+	char own[CONFIG_FAULT_MAX + 3];
 
 	if (q->job.state == JOB_FAULT)
 		return;
@@ -340,8 +353,9 @@ static void follow_fault(struct jobs *j)
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "alarm", .job = q->job.id, .outcome = fault,
 		.place_mm = q->snap.place_mm,
-	}, "job %s: fault %s in line %u; reset, then start goes on, stop "
-		  "ends it", q->job.name, fault, q->snap.line);
+	}, "job %s: fault %s%s in line %u; reset, then start goes on, stop "
+		  "ends it", q->job.name, fault, own_fault(j, own, sizeof(own)),
+		  q->snap.line);
 	/* A reset alone must not start the job. */
 	set_waiting(j, true);
 }
@@ -496,6 +510,7 @@ static void fault_without_job(struct jobs *j)
 {
 	struct queue *q = &j->queue;
 	const char *fault = fault_name(j->link.snap.fault);
+	char own[CONFIG_FAULT_MAX + 3];
 
 	/* A reset alone must not start anything. */
 	set_waiting(j, q->waiting || q->behind > 0);
@@ -504,7 +519,8 @@ static void fault_without_job(struct jobs *j)
 	q->fault_told = j->link.snap.fault;
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "alarm", .outcome = fault,
-	}, "fault %s without a job; reset leaves it", fault);
+	}, "fault %s%s without a job; reset leaves it", fault,
+		  own_fault(j, own, sizeof(own)));
 }
 
 /* A path cannot begin while an axis moves, nor where an axis is not homed but

@@ -6,6 +6,7 @@
 
 #include "interp/tech_table.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -105,6 +106,21 @@ static void fill_machine(struct jobs_lcm_status *w, const struct link *l)
 	w->wake_late_max_us = (uint32_t)(s->wake_late_max_ns / 1000);
 }
 
+#define FILL_TOLD(name, id)	w->told_##name = there ? s->told[id] : NAN;
+
+/* What a generator that is not heard now told is not known now. */
+static void fill_generator(struct jobs_lcm_status *w, const struct jobs *j)
+{
+	const struct shm_snapshot *s = &j->link.snap;
+	const bool there = j->link.state == LINK_OK;
+	static char fault[CONFIG_FAULT_MAX];
+
+	PROCESS_TELLS(FILL_TOLD)
+	w->generator_fault = config_fault_text(j->config->generator.fault_words,
+					       w->told_fault, fault,
+					       sizeof(fault));
+}
+
 static void fill_electrode(struct jobs_lcm_status *w, struct jobs *j)
 {
 	const struct electrode *e = &j->electrode;
@@ -155,6 +171,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 		 "degraded: " : "ok", store_why(j->store));
 	w.store = store;
 	fill_electrode(&w, j);
+	fill_generator(&w, j);
 	w.interrupted = j->interrupted;
 	w.axes = jobs_axes(j->config->axes.present, axes);
 	w.lost = j->link.state == LINK_OK ? interrupt_lost(j) : "";

@@ -50,9 +50,10 @@
 #include <ck_ring.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	13
+#define SHM_LAYOUT	14
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NGENERATOR	6		/* values of a generator */
+#define SHM_NTOLD	15		/* what it tells: PROCESS_NTOLD */
 #define SHM_NAME_MAX	32
 #define SHM_PATH_MAX	96
 
@@ -174,9 +175,9 @@ struct shm_snapshot {
 					 * fault is latched */
 	uint64_t stand_cycles;		/* how long */
 	/* By enum interp_tech_id: what the generator is asked for, NAN: its own
-	 * setting; what it tells, NAN: nothing yet; a bit of each that it
-	 * tells. */
-	double asked[SHM_NGENERATOR], told[SHM_NGENERATOR];
+	 * setting; what it tells by enum process_id, NAN: nothing; a bit of
+	 * each that it tells. */
+	double asked[SHM_NGENERATOR], told[SHM_NTOLD];
 	uint32_t tells;
 	bool has_asked;			/* it has all of it, as far as it tells;
 					 * else for its settle_ms */

@@ -13,7 +13,7 @@
 #include <string.h>
 
 struct values {
-	const char *machine;
+	const char *machine, *fault_words;
 	struct interp_tech base;
 	/* About the program that is loaded. */
 	uint32_t n;			/* 0: none */
@@ -30,6 +30,7 @@ struct values *values_create(const struct machine_config *config)
 	if (!v)
 		return NULL;
 	v->machine = config->name;
+	v->fault_words = config->generator.fault_words;
 	config_tech_base(config, &v->base);
 	return v;
 }
@@ -138,11 +139,22 @@ static json_t *told_of(const struct shm_snapshot *s)
 {
 	json_t *o = json_object();
 
-	for (int i = 0; i < SHM_NGENERATOR; i++)
+	for (int i = 0; i < SHM_NTOLD; i++)
 		if (s->tells >> i & 1 && isfinite(s->told[i]))
-			json_object_set_new(o, interp_tech_field[i].name,
+			json_object_set_new(o, process_name(i),
 					    json_real(s->told[i]));
 	return o;
+}
+
+static void put_fault(const struct values *v, const struct shm_snapshot *s,
+		      json_t *to)
+{
+	const bool tells = s->tells >> PROCESS_FAULT & 1;
+	char text[CONFIG_FAULT_MAX];
+
+	config_fault_text(v->fault_words, tells ? s->told[PROCESS_FAULT] : 0,
+			  text, sizeof(text));
+	json_object_set_new(to, "generator_fault", json_string(text));
 }
 
 void values_fill(struct values *v, const struct shm_status *status,
@@ -168,6 +180,7 @@ void values_fill(struct values *v, const struct shm_status *status,
 	json_object_set_new(to, "values", values_json(&t));
 	json_object_set_new(to, "set", as_names(own));
 	json_object_set_new(to, "told", told_of(s));
+	put_fault(v, s, to);
 }
 
 json_t *values_fields(void)

@@ -24,9 +24,9 @@ struct values *values_create(const struct machine_config *config);
 void values_destroy(struct values *v);
 
 /**
- * values_fill() - put "condition", "values", "set" and what the generator
- * tells, "told", into @to. Without @status (NULL) they are the values of the
- * machine file.
+ * values_fill() - put "condition", "values", "set", what the generator tells,
+ * "told", and its own "generator_fault" in words into @to.  Without @status
+ * (NULL) they are the values of the machine file.
  */
 void values_fill(struct values *v, const struct shm_status *status,
 		 const struct shm_snapshot *s, json_t *to);

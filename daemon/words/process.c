@@ -11,11 +11,19 @@
 
 const char *process_name(int field)
 {
-	static const char *const names[] = { "sense", "pump", "spark" };
+	static const char *const names[] = {
+		"sense", "pump", "spark", "opens", "sparks", "arcs", "shorts",
+		"energy_j", "fault",
+	};
 
 	return field < INTERP_NGENERATOR ? interp_tech_field[field].name :
-	       field < PROCESS_NFIELDS ? names[field - INTERP_NGENERATOR] :
-					 "?";
+	       field < PROCESS_NTOLD ? names[field - INTERP_NGENERATOR] : "?";
+}
+
+const char *process_unit(int field)
+{
+	return field < INTERP_NGENERATOR ? interp_tech_field[field].unit :
+	       field == PROCESS_ENERGY_J ? "J" : "";
 }
 
 static double least(const struct process_delivers *d)

@@ -38,14 +38,38 @@
 /*
  * What crosses to the generator: the fields of a condition up to
  * INTERP_NGENERATOR, by enum interp_tech_id, and then these, which are 0 or 1.
+ * Those from PROCESS_NFIELDS it can only tell: sums that run on, of pulses and
+ * of the energy of their discharges, and the number of its own fault.
  */
 enum process_id {
 	PROCESS_SENSE = INTERP_NGENERATOR,	/* the voltage to feel contact
 						 * by */
 	PROCESS_PUMP,
 	PROCESS_SPARK,
-	PROCESS_NFIELDS
+	PROCESS_NFIELDS,
+	PROCESS_OPENS = PROCESS_NFIELDS,
+	PROCESS_SPARKS,
+	PROCESS_ARCS,
+	PROCESS_SHORTS,
+	PROCESS_ENERGY_J,
+	PROCESS_FAULT,			/* 0: none */
+	PROCESS_NTOLD
 };
+
+/* T(name, id): all that a generator can tell. */
+#define PROCESS_TELLS(T) \
+	T(peak_a, INTERP_TECH_PEAK_A) \
+	T(on_us, INTERP_TECH_ON_US) \
+	T(off_us, INTERP_TECH_OFF_US) \
+	T(polarity, INTERP_TECH_POLARITY) \
+	T(ignition_v, INTERP_TECH_IGNITION_V) \
+	T(iso, INTERP_TECH_ISO) \
+	T(opens, PROCESS_OPENS) \
+	T(sparks, PROCESS_SPARKS) \
+	T(arcs, PROCESS_ARCS) \
+	T(shorts, PROCESS_SHORTS) \
+	T(energy_j, PROCESS_ENERGY_J) \
+	T(fault, PROCESS_FAULT)
 
 #define PROCESS_VALUES_MAX	64
 
@@ -58,8 +82,25 @@ struct process_delivers {
 	double value[PROCESS_VALUES_MAX];
 };
 
-/** process_name() - of a field of enum process_id. */
+/** process_name() - of a field of enum process_id, also of one that is only
+ *  told. */
 const char *process_name(int field);
+
+/** process_unit() - the same; "" if it has none. */
+const char *process_unit(int field);
+
+/** process_is_sum() - is it a sum that only runs on? */
+static inline bool process_is_sum(int field)
+{
+	return field >= PROCESS_OPENS && field <= PROCESS_ENERGY_J;
+}
+
+/**
+ * process_told_text() - what a generator tells, as "peak_a 6 A, sparks 1200",
+ * into @buf; "" for nothing.  @told: by enum process_id; NAN: not that.
+ */
+const char *process_told_text(const double told[PROCESS_NTOLD], char *buf,
+			      size_t size);
 
 /**
  * process_nearest() - what the generator does when it is asked for @asked.

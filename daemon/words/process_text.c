@@ -21,6 +21,24 @@ const char *process_names(uint64_t fields, char *buf, size_t size)
 	return buf;
 }
 
+const char *process_told_text(const double told[PROCESS_NTOLD], char *buf,
+			      size_t size)
+{
+	size_t n = 0;
+
+	buf[0] = '\0';
+	for (int i = 0; i < PROCESS_NTOLD && n < size; i++) {
+		const char *unit = process_unit(i);
+
+		if (!isnan(told[i]))
+			n += (size_t)snprintf(buf + n, size - n,
+					      "%s%s %.10g%s%s", n ? ", " : "",
+					      process_name(i), told[i],
+					      *unit ? " " : "", unit);
+	}
+	return buf;
+}
+
 static int order(const struct process_delivers *d, double after)
 {
 	int best = -1;
@@ -35,8 +53,7 @@ static int order(const struct process_delivers *d, double after)
 void process_range_text(const struct process_delivers *d, int field, char *buf,
 			size_t size)
 {
-	const char *unit = field < INTERP_NGENERATOR ?
-			   interp_tech_field[field].unit : "";
+	const char *unit = process_unit(field);
 	double last = -INFINITY;
 	size_t at = 0;
 	int i;

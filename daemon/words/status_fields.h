@@ -55,7 +55,20 @@
 	NUMBER(electrode_wear_mm) \
 	WORD(stand) \
 	TEXT(asks) \
-	NUMBER(stand_s)
+	NUMBER(stand_s) \
+	NUMBER(told_peak_a) \
+	NUMBER(told_on_us) \
+	NUMBER(told_off_us) \
+	NUMBER(told_polarity) \
+	NUMBER(told_ignition_v) \
+	NUMBER(told_iso) \
+	NUMBER(told_opens) \
+	NUMBER(told_sparks) \
+	NUMBER(told_arcs) \
+	NUMBER(told_shorts) \
+	NUMBER(told_energy_j) \
+	NUMBER(told_fault) \
+	WORD(generator_fault)
 
 #define STATUS_ONE(name)	+ 1
 

@@ -57,6 +57,7 @@ def test_the_readme_shows_what_its_command_prints(tmp_path):
 
 # To start from.  Each is understood, and has the backend that its name says.
 START = {"machine-gpio.ini": "gpio", "machine-gpio-generator.ini": "gpio",
+         "machine-modbus.ini": "gpio",
          "machine-can402.ini": "can402",
          "machine-wire.ini": "null", "machine-five-axis.ini": "null",
          "template.ini": "null"}
@@ -101,11 +102,17 @@ def test_edmd_refuses_it_too(tmp_path):
     assert "peak_a 6 A does not reach the generator" in p.stderr.decode()
 
 
-def test_a_generator_on_lines_has_the_conditions_of_the_table():
-    done("--machine", EXAMPLES / "machine-gpio-generator.ini", "--check",
-         text=CALLS)
-    p = run("--machine", EXAMPLES / "machine-gpio-generator.ini", "--check",
+@pytest.mark.parametrize("name, calls", [
+    ("machine-gpio-generator.ini", CALLS),
+    ("machine-modbus.ini", CALLS.replace(" T84", ""))])
+def test_a_generator_has_the_conditions_of_the_table(name, calls):
+    done("--machine", EXAMPLES / name, "--check", text=calls)
+    p = run("--machine", EXAMPLES / name, "--check",
             text="G21 G90\nC120 M3\nG80 Z-\nM2\n")
+    assert p.returncode == 0, p.stderr
+    edmd = Path(PROGRAM).parent / "edmd"
+    p = subprocess.run([edmd, "--check", "--config", EXAMPLES / name],
+                       capture_output=True)
     assert p.returncode == 0, p.stderr
 
 

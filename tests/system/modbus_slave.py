@@ -4,7 +4,8 @@
 Holding registers, by the addresses of the requests: 10 peak current in 0.1 A,
 11 on time in 0.1 us, 12 off time in 0.1 us, 13 open-circuit voltage, 14 bit 0
 negative electrode, bit 1 iso pulse, bit 8 pump.  Input registers 30, 31: peak
-current and on time as they are.
+current and on time as they are; 40, 41 good pulses, the high half first; 42, 43 arcs,
+the low one first; 44, 45 energy in mJ; 46 its own fault.
 """
 
 import asyncio
@@ -30,6 +31,13 @@ ignition_v = register 13
 polarity = register 14 bit 0
 iso = register 14 bit 1
 pump = register 14 bit 8
+"""
+SUMS = """
+told_sparks = input 40 bits 32
+told_arcs = input 42 bits 32 first low
+told_energy_j = input 44 bits 32 scale 0.001
+told_fault = input 46
+fault_words = 1 no water, 2 too warm
 """
 
 
@@ -88,6 +96,11 @@ class Slave:
     def get(self, address):
         """Of what was written; the context counts from 1."""
         return self.block.getValues(address + 1, 1)[0]
+
+    def count(self, sparks, arcs, mj, fault=0):
+        self.block.setValues(41, [
+            sparks >> 16, sparks & 0xffff, arcs & 0xffff, arcs >> 16,
+            mj >> 16, mj & 0xffff, fault])
 
     def reset(self):
         """As after a loss of power."""

@@ -30,6 +30,9 @@ from cyclonedds.sub import DataReader  # noqa: E402
 from cyclonedds.topic import Topic  # noqa: E402
 from cyclonedds.util import duration  # noqa: E402
 
+TOLD = """peak_a on_us off_us polarity ignition_v iso opens sparks arcs shorts
+energy_j fault""".split()
+
 
 class GeneratorState(IdlEnum, typename="edm.GeneratorState"):
     GENERATOR_UNDEFINED = 0
@@ -67,6 +70,19 @@ class MachineState(IdlStruct, typename="edm.MachineState"):
     wake_late_max_us: float64
     outcome: bounded_str[15]
     stand: bounded_str[15]
+    told_peak_a: float64
+    told_on_us: float64
+    told_off_us: float64
+    told_polarity: float64
+    told_ignition_v: float64
+    told_iso: float64
+    told_opens: float64
+    told_sparks: float64
+    told_arcs: float64
+    told_shorts: float64
+    told_energy_j: float64
+    told_fault: float64
+    generator_fault: bounded_str[63]
 
 
 class Peer:
@@ -287,7 +303,8 @@ def test_a_hostile_sample_is_shown_as_harmless_text(peer):
         position_mm=[math.nan] * 8,
         generator_state=GeneratorState.GENERATOR_ERROR, is_on=True,
         jumps=0, retracts=0, shorts=0, overruns=0, wake_late_max_us=-1e308,
-        **words)
+        generator_fault="\x1b[2J",
+        **{f"told_{n}": math.inf for n in TOLD}, **words)
     writer = DataWriter(peer.participant, peer.topic, qos=peer.writing)
     writer.write(s)
     for more in ((), ("--json",)):

@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 import rig
-from modbus_slave import LAYOUT, Slave
+from modbus_slave import LAYOUT, SUMS, Slave
 
 MACHINE = rig.NULL_MACHINE + """
 [tech]
@@ -153,6 +153,41 @@ def test_an_edmd_that_dies_in_a_walk_has_nothing_tried(tcp):
     tcp.c.status_where(lambda s: s.daemon == "ok")
     rig.until(lambda: tcp.told()[0]["there"])
     assert tcp.told()[1]["peak_a"]["asked"] is None
+
+
+@pytest.fixture
+def sums(tmp_path):
+    with Slave() as slave, make(tmp_path, slave, SUMS) as m:
+        (tmp_path / "shop.tech").write_text(TABLE)
+        slave.count(0x1FFF0, 7, 10)
+        m.start()
+        yield Shop(m, slave)
+
+
+def test_what_it_counts_reaches_people(sums):
+    sums.c.status_where(lambda s: s.told_sparks == 0)
+    sums.slave.count(0x20010, 0x10007, 1510)
+    s = sums.c.status_where(lambda s: s.told_energy_j > 0)
+    assert s.told_sparks == 0x20 and s.told_arcs == 0x10000
+    assert s.told_energy_j == pytest.approx(1.5)
+    assert s.told_shorts != s.told_shorts and s.told_fault == 0
+    told = json.loads(sums.c.ask("values").body)["told"]
+    assert told["sparks"] == 0x20 and "shorts" not in told
+    text = sums.m.ctl("status").stdout
+    assert "sparks 32, arcs 65536, energy_j 1.5 J, fault 0" in text
+    seen = json.loads(sums.m.ctl("--json", "status").stdout)
+    assert seen["told_arcs"] == 65536 and "told_opens" not in seen
+
+
+def test_its_own_fault_is_told_in_its_words(sums):
+    sums.cut()
+    sums.slave.count(0x1FFF0, 7, 10, fault=2)
+    s = sums.c.status_where(lambda s: s.told_fault == 2)
+    assert s.generator_fault == "2 too warm"
+    sums.logs("generator: its own fault 2 too warm")
+    assert "its own fault: 2 too warm" in sums.m.ctl("status").stdout
+    values = json.loads(sums.c.ask("values").body)
+    assert values["generator_fault"] == "2 too warm"
 
 
 def test_one_that_lies_ends_the_sparks(shop):

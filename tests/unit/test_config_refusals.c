@@ -259,6 +259,28 @@ static const struct refusal refusals[] = {
 	  6, 0, "generator.modbus_unit 0", "1 to 247" },
 	{ MODBUS "modbus = /dev/ttyS0\nsilent_ms = 149\npeak_a = register 1\n",
 	  6, 0, "generator.silent_ms 149", "at least 150" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "told_opens = input 40 bits 32\ntold_arcs = input 41\n", 8, 0,
+	  "generator.told_arcs and generator.told_opens have bits of register "
+	  "41", "a place of its own" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1 bits 32\n", 6, 0,
+	  "has a word that is none of", "register 10 scale 0.1" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "told_opens = input 65535 bits 32\n", 7, 0,
+	  "goes beyond the last register", "register 10 scale 0.1" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "told_opens = input 40 first low\n", 7, 0,
+	  "has an order, and one register", "register 10 scale 0.1" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "told_fault = input 40 codes 1 2\n", 7, 0,
+	  "has codes and is a sum or a number", "register 10 scale 0.1" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "fault_words = 1 no water, too warm\n", 7, 0,
+	  "generator.fault_words \"1 no water, too warm\" has words without a "
+	  "number", "1 no water, 2 too warm" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "fault_words = 1\n", 7, 0, "has a number without words",
+	  "1 no water, 2 too warm" },
 	{ MODBUS "modbus = /dev/ttyS0\n", 4, 0, "no field has a register",
 	  "peak_a = register N" },
 	{ LINES_MACHINE "[generator]\ninterface = modbus\nmodbus = /dev/ttyS0\n"

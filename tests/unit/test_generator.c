@@ -289,6 +289,93 @@ static void what_is_asked_anew_is_judged_anew(void **state)
 	unmake(&r);
 }
 
+static void tell_sums(struct rig *r, uint16_t sparks, uint16_t mj,
+		      uint8_t fault)
+{
+	struct can_frame f = { .can_id = 1012, .can_dlc = 5 };
+
+	can_put(f.data, sparks, 2);
+	can_put(f.data + 2, mj, 2);
+	f.data[4] = fault;
+	assert_int_equal(write(r->fd, &f, sizeof(f)), sizeof(f));
+	period(r);
+}
+
+static const char sums[] =
+	"told_sparks = can 1012 byte 0 bits 16\n"
+	"told_energy_j = can 1012 byte 2 bits 16 scale 0.001\n"
+	"told_fault = can 1012 byte 4 bits 8\n"
+	"fault_words = 1 no water, 3 much too warm\n";
+
+/* Over the last bit, and anew at 0 when it was switched off. */
+static void sums_run_on_and_only_up(void **state)
+{
+	struct rig r;
+	const struct io_generator *says = &r.in.generator;
+
+	(void)state;
+	make(&r, sums);
+	period(&r);
+	assert_true(isnan(says->told[PROCESS_SPARKS]));
+	assert_false(r.in.energy_valid);
+	tell_sums(&r, 65000, 100, 0);
+	assert_true(says->told[PROCESS_SPARKS] == 0);
+	tell_sums(&r, 464, 100, 0);
+	assert_true(says->told[PROCESS_SPARKS] == 1000);
+	tell_sums(&r, 50000, 100, 0);
+	assert_true(says->told[PROCESS_SPARKS] == 1000);
+	tell_sums(&r, 50010, 100, 0);
+	assert_true(says->told[PROCESS_SPARKS] == 1010);
+	assert_true(isnan(says->told[PROCESS_ARCS]));
+	unmake(&r);
+}
+
+/* What comes in the dark is of the sparks before it: none of it is lost. */
+static void energy_is_handed_on_with_the_sparks(void **state)
+{
+	struct rig r;
+	double sum_j = 0;
+
+	(void)state;
+	make(&r, sums);
+	tell_sums(&r, 0, 100, 0);
+	for (int i = 0; i < 8; i++) {
+		r.out.power = i % 3 != 0;
+		tell_sums(&r, 0, (uint16_t)(110 + 10 * i), 0);
+		assert_true(r.in.energy_valid);
+		sum_j += r.in.energy_j;
+	}
+	period(&r);
+	assert_true(fabs(sum_j + r.in.energy_j - 0.08) < 1e-9);
+	assert_true(fabs(r.in.generator.told[PROCESS_ENERGY_J] - 0.08) < 1e-9);
+	unmake(&r);
+}
+
+static void its_own_fault_is_trouble_until_it_is_gone_and_reset(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r, sums);
+	tell_sums(&r, 0, 0, 0);
+	assert_false(r.in.generator.trouble);
+	tell_sums(&r, 0, 0, 3);
+	assert_true(r.in.generator.trouble);
+	assert_true(log_has(&r, "generator: its own fault 3 much too warm"));
+	r.out.reset = true;
+	tell_sums(&r, 0, 0, 3);
+	tell_sums(&r, 0, 0, 2);
+	assert_true(r.in.generator.trouble);
+	assert_true(log_has(&r, "generator: its own fault 2"));
+	tell_sums(&r, 0, 0, 0);
+	assert_true(r.in.generator.trouble);
+	r.out.reset = true;
+	period(&r);
+	tell_sums(&r, 0, 0, 0);
+	assert_false(r.in.generator.trouble);
+	unmake(&r);
+}
+
 /* -- What of a condition is delivered -------------------------------------- */
 
 #define MODBUS	"spark = 9\nwatchdog_by = its own\nestop_by = its own\n" \
@@ -394,6 +481,9 @@ int main(void)
 		cmocka_unit_test(one_that_is_silent_is_trouble_in_silent_ms),
 		cmocka_unit_test(one_that_restarts_is_trouble),
 		cmocka_unit_test(what_is_asked_anew_is_judged_anew),
+		cmocka_unit_test(sums_run_on_and_only_up),
+		cmocka_unit_test(energy_is_handed_on_with_the_sparks),
+		cmocka_unit_test(its_own_fault_is_trouble_until_it_is_gone_and_reset),
 		cmocka_unit_test(each_field_reaches_it_or_is_refused),
 		cmocka_unit_test(lines_have_the_code_of_the_value),
 	};

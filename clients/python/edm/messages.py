@@ -18,7 +18,7 @@ SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
-STATUS = bytes.fromhex("be7bb53d7d8583fe")
+STATUS = bytes.fromhex("555184cde6b3dcd1")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -242,6 +242,19 @@ class Status:
     stand: str = ""
     asks: str = ""
     stand_s: float = 0.0
+    told_peak_a: float = 0.0
+    told_on_us: float = 0.0
+    told_off_us: float = 0.0
+    told_polarity: float = 0.0
+    told_ignition_v: float = 0.0
+    told_iso: float = 0.0
+    told_opens: float = 0.0
+    told_sparks: float = 0.0
+    told_arcs: float = 0.0
+    told_shorts: float = 0.0
+    told_energy_j: float = 0.0
+    told_fault: float = 0.0
+    generator_fault: str = ""
 
     def encode(self) -> Bytes:
         return (STATUS
@@ -290,7 +303,20 @@ class Status:
                 + put.double(self.electrode_wear_mm)
                 + put.string(self.stand)
                 + put.string(self.asks)
-                + put.double(self.stand_s))
+                + put.double(self.stand_s)
+                + put.double(self.told_peak_a)
+                + put.double(self.told_on_us)
+                + put.double(self.told_off_us)
+                + put.double(self.told_polarity)
+                + put.double(self.told_ignition_v)
+                + put.double(self.told_iso)
+                + put.double(self.told_opens)
+                + put.double(self.told_sparks)
+                + put.double(self.told_arcs)
+                + put.double(self.told_shorts)
+                + put.double(self.told_energy_j)
+                + put.double(self.told_fault)
+                + put.string(self.generator_fault))
 
     @staticmethod
     def decode(data: Bytes) -> Status:
@@ -342,6 +368,19 @@ class Status:
             r.string(),
             r.string(),
             r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.double(),
+            r.string(),
         )
         r.end()
         return m

@@ -28,7 +28,7 @@ export interface State {
 	limit: number; jumps: number; retracts: number; shorts: number;
 	overruns: number; lateMaxUs: number; tookMaxUs: number; periodUs: number;
 	jobS: number; condition: string; values: Record<string, number>;
-	set: string[]; told: Record<string, number>; jobs: boolean; job: string; jobName: string; jobState: string;
+	set: string[]; told: Record<string, number>; generator_fault: string; jobs: boolean; job: string; jobName: string; jobState: string;
 	lines: number; queue: number; eta: number; etaMin: number; etaMax: number; etaBy: string; etaCondition: string; etaFactor: number; end: number; progress: number;
 	store: string;
 	interrupted: string; lost: string; faults: string; hunts: number;
@@ -53,7 +53,7 @@ const EMPTY: State = {
 	override: 1, pos: [], place: 0, far: 0, length: 0, depth: 0, line: 0, seg: 0,
 	program: 0, unhomed: 0, limit: 0, jumps: 0, retracts: 0, shorts: 0,
 	overruns: 0, lateMaxUs: 0, tookMaxUs: 0, periodUs: 0, jobS: 0, condition: "",
-	values: {}, set: [], told: {}, jobs: false, job: "", jobName: "", jobState: "",
+	values: {}, set: [], told: {}, generator_fault: "", jobs: false, job: "", jobName: "", jobState: "",
 	lines: 0, queue: 0, eta: -1, etaMin: -1, etaMax: -1, etaBy: "", etaCondition: "", etaFactor: 0, end: 0, progress: 0,
 	store: "", interrupted: "", lost: "",
 	faults: "", hunts: 0, electrode: 0, stand: "", standOf: 0, asks: false,

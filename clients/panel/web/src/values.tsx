@@ -72,12 +72,15 @@ export function ValuesSheet(p: { onClose: () => void }): JSX.Element {
 	const [at, set] = useState("");
 	const s = link.state, fields = (link.hello?.fields ?? []).filter((f) => f.live);
 	const one = fields.find((f) => f.name === at);
+	const more = Object.entries(s.told).filter(([name]) => !(name in s.values) && name !== "fault").map(([name, v]) => `${name} ${short(v)}`).join(", ");
 	return <Sheet title={`${t("cut.values")}: ${s.condition || "\u2013"}`} onClose={p.onClose} wide>
 		{one ? <><One field={one} /><Key class="quiet" onPress={() => set("")}>{t("cut.more")}</Key></> :
 			<ul class="valuelist">{fields.map((f) => <li><button type="button" onClick={() => set(f.name)}>
 				<span>{fieldWord(f.name, f.help)}</span><b>{s.values[f.name] === undefined ? "\u2013" : short(s.values[f.name] as number)} <u>{unitWord(f.unit)}</u></b>
 				{s.told[f.name] !== undefined && <em>{t("cut.told", { value: short(s.told[f.name] as number) })}</em>}
 				{s.set.includes(f.name) && <em>{t("cut.setby")}</em>}</button></li>)}</ul>}
+		{more && <p class="note">{t("cut.counts", { value: more })}</p>}
+		{s.generator_fault && <p class="note">{t("cut.ownfault", { value: s.generator_fault })}</p>}
 		<p class="note">{whyNot("set") || t("cut.setnote")}</p>
 	</Sheet>;
 }

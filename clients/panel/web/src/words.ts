@@ -95,7 +95,7 @@ export const en = {
 	"cut.step": "Step to a node of the path", "cut.values": "Values in force",
 	"cut.setnote": "A value that is set stays with its condition until the job ends.",
 	"cut.takeback": "Take back", "cut.set": "Set", "cut.range": "{min} to {max} {unit}",
-	"cut.setby": "set by hand", "cut.told": "the generator tells {value}", "cut.ofcondition": "of the condition",
+	"cut.setby": "set by hand", "cut.told": "the generator tells {value}", "cut.counts": "The generator counts: {value}", "cut.ownfault": "The generator's own fault: {value}", "cut.ofcondition": "of the condition",
 	"cut.bounds": "{low} has to stay below {high}.",
 	"cut.override.about": "Speed of positioning, in per cent of the programmed one.",
 

@@ -85,7 +85,7 @@ export const zh: Record<Word, string> = {
 	"cut.retractby": "沿路径回退", "cut.retractnote": "沿路径退回这么远，然后保持。",
 	"cut.step": "走到路径的节点", "cut.values": "当前数值",
 	"cut.setnote": "设定的值随其条件保持到任务结束。", "cut.takeback": "取消设定", "cut.set": "设定",
-	"cut.range": "{min} 到 {max} {unit}", "cut.setby": "手动设定", "cut.told": "脉冲电源反馈 {value}", "cut.ofcondition": "来自条件",
+	"cut.range": "{min} 到 {max} {unit}", "cut.setby": "手动设定", "cut.told": "脉冲电源反馈 {value}", "cut.counts": "脉冲电源计数：{value}", "cut.ownfault": "脉冲电源自身故障：{value}", "cut.ofcondition": "来自条件",
 	"cut.bounds": "{low} 必须低于 {high}。", "cut.override.about": "定位速度，占编程速度的百分比。",
 
 	"view.3d": "三维", "view.top": "俯视", "view.front": "正视", "view.follow": "跟随", "view.cut": "已加工",
