@@ -87,7 +87,7 @@ struct config_generator {
 	char by_hand[96];		/* names of fields; "none" */
 	double settle_ms, polarity_ms;
 	double silent_ms, confirm_s;
-	char modbus[64];		/* config_modbus_read() */
+	char modbus[128];		/* config_modbus_read() */
 	double baud;
 	int parity;			/* enum config_parity */
 	double unit;			/* the address of the slave */
@@ -452,7 +452,8 @@ void config_way(const struct machine_config *c, int field, bool told,
 /* Where a Modbus slave is. */
 struct config_modbus_at {
 	bool serial;
-	char host[48];			/* the address, or the device */
+	char host[128];			/* the address, or the device: a name of
+					 * /dev/serial/by-id is long */
 	char port[8];
 };
 

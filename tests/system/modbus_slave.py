@@ -148,6 +148,22 @@ class Slave:
             self.server.shutdown(), self.loop).result(30)
         self.thread.join(30)
 
+    def unplug(self):
+        """The port of edmd goes, as that of a USB adapter does."""
+        self.stop()
+        for fd in self.slaves + self.masters:
+            with contextlib.suppress(OSError):
+                os.close(fd)
+
+    def plug(self):
+        """It comes back, under the name that udev gives it."""
+        link = self.where
+        self._join_ptys()
+        os.unlink(link)
+        os.symlink(self.where, link)
+        self.where = link
+        self.start()
+
     def _join_ptys(self):
         """Two pseudo terminals back to back are a serial line."""
         self.masters, names = [], []

@@ -2,6 +2,7 @@
 """A generator on Modbus: the slave is pymodbus, over TCP and over a pty."""
 
 import json
+import os
 import subprocess
 
 import pytest
@@ -257,6 +258,25 @@ def test_a_link_that_is_cut_comes_back(tcp):
     tcp.slave.start()
     tcp.logs("Modbus link is there")
     assert tcp.until_in_force()["peak_a"]["told"] == pytest.approx(6)
+
+
+def test_a_serial_port_that_goes_is_opened_again_when_it_is_back(tmp_path):
+    with Slave(pty=True) as slave:
+        link = str(tmp_path / "usb-FTDI_FT232R_USB_UART_A50285BI-if00-port0")
+        os.symlink(slave.where, link)
+        slave.where = link
+        with make(tmp_path, slave) as m:
+            (tmp_path / "shop.tech").write_text(TABLE)
+            m.start()
+            shop = Shop(m, slave)
+            shop.cut()
+            slave.unplug()
+            shop.logs("it does not tell its peak_a any more")
+            shop.logs("Modbus link is down")
+            slave.plug()
+            shop.logs("Modbus link is there")
+            assert shop.until_in_force()["peak_a"]["told"] == \
+                pytest.approx(6)
 
 
 def of_another_unit(data):
