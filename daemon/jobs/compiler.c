@@ -167,7 +167,6 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	of.build.walked_max = c->request.walked_max;
 	of.build.begins_inside = c->request.goes_on;
 	of.build.from = c->request.goes_on ? &c->request.from : NULL;
-	of.build.threads = wants_program(c) ? 0 : 1;
 	c->memory = (struct interp_build_memory) { block_grow, c };
 	of.build.memory = c->request.wants_block ? &c->memory : NULL;
 	c->build = interp_build_create(&of.build);

@@ -150,7 +150,7 @@ static void write_text(FILE *f, int kind)
 static struct interp_program compile(const char *text, size_t size)
 {
 	struct interp_build_options bo = {
-		.machine = &machine.axes, .threads = 1,
+		.machine = &machine.axes,
 	};
 	const struct interp_nc_options no = { .machine = &machine.axes };
 	struct interp_build *b = interp_build_create(&bo);

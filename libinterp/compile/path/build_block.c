@@ -9,8 +9,6 @@
 #include "path/builder.h"
 #include "interp/limits.h"
 
-#include "both.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,47 +72,12 @@ size_t interp_build_bytes(const struct interp_build *b)
 
 /* -- Tables ---------------------------------------------------------------- */
 
-struct copy {
-	char *to;
-	const char *from;
-	size_t bytes;
-};
-
-static void copy_first(void *arg)
-{
-	const struct copy *c = arg;
-
-	memcpy(c->to, c->from, c->bytes / 2);
-}
-
-static void copy_second(void *arg)
-{
-	const struct copy *c = arg;
-	const size_t at = c->bytes / 2;
-
-	memcpy(c->to + at, c->from + at, c->bytes - at);
-}
-
-/* Shorter ones are copied before a thread is there. */
-#define LONG_COPY	(1u << 20)
-
-/* New pages take most of the time of a long copy. */
-static void copy(void *to, const void *from, size_t bytes, uint32_t threads)
-{
-	struct copy c = { to, from, bytes };
-
-	if (threads > 1 && bytes >= LONG_COPY)
-		both(copy_first, copy_second, &c);
-	else
-		memcpy(to, from, bytes);
-}
-
 /* The table's memory is freed at once, so a large program is in memory only
  * once. */
-static void move_table(char *to, struct table *t, uint32_t threads)
+static void move_table(char *to, struct table *t)
 {
 	if (t->n > 0)
-		copy(to, t->at, t->n * t->size, threads);
+		memcpy(to, t->at, t->n * t->size);
 	build_table_free(t);
 }
 
@@ -136,10 +99,9 @@ static void write_head(const struct interp_build *b,
 
 /* Node 0 comes with the first column.  The END has a node of its own. */
 static void write_nodes(struct interp_build *b, size_t rows,
-			const struct interp_program_head *h, int64_t *nodes,
-			uint32_t threads)
+			const struct interp_program_head *h, int64_t *nodes)
 {
-	move_table((char *)nodes, &b->nodes, threads);
+	move_table((char *)nodes, &b->nodes);
 	for (size_t i = rows; i <= h->nsegs; i++) {
 		for (uint32_t j = 0; j < b->naxes; j++)
 			nodes[i * b->naxes + j] = b->here[b->column[j]];
@@ -148,28 +110,18 @@ static void write_nodes(struct interp_build *b, size_t rows,
 
 /* All but the segments, which are there. */
 static void write_tables(struct interp_build *b,
-			 const struct interp_program_head *h, char *base,
-			 uint32_t threads)
+			 const struct interp_program_head *h, char *base)
 {
-	move_table(base + h->arcs_at, &b->arcs, threads);
-	move_table(base + h->conds_at, &b->conds, threads);
-	move_table(base + h->escapes_at, &b->escapes, threads);
-	move_table(base + h->couples_at, &b->couples, threads);
-	move_table(base + h->bits_at, &b->bits, threads);
-	move_table(base + h->curves_at, &b->curves, threads);
-	move_table(base + h->pieces_at, &b->pieces, threads);
-	move_table(base + h->stops_at, &b->stops, threads);
-	move_table(base + h->numbers_at, &b->numbers, threads);
-	move_table(base + h->runs_at, &b->runs, threads);
-}
-
-/* A shorter program is done before a thread has begun. */
-#define LONG		8192		/* segments */
-
-static uint32_t threads_of(const struct interp_build *b)
-{
-	return b->segs.n < LONG ? 1 :
-	       b->o.threads ? b->o.threads : both_processors();
+	move_table(base + h->arcs_at, &b->arcs);
+	move_table(base + h->conds_at, &b->conds);
+	move_table(base + h->escapes_at, &b->escapes);
+	move_table(base + h->couples_at, &b->couples);
+	move_table(base + h->bits_at, &b->bits);
+	move_table(base + h->curves_at, &b->curves);
+	move_table(base + h->pieces_at, &b->pieces);
+	move_table(base + h->stops_at, &b->stops);
+	move_table(base + h->numbers_at, &b->numbers);
+	move_table(base + h->runs_at, &b->runs);
 }
 
 static struct interp_limits limits_of(const struct interp_build *b)
@@ -196,7 +148,6 @@ void *interp_build_take(struct interp_build *b,
 	struct interp_program_head h = layout(b);
 	const size_t n = b->segs.n;
 	const bool ended = ends(b);
-	const uint32_t threads = threads_of(b);
 	const struct interp_limits l = limits_of(b);
 	struct interp_program p;
 	struct interp_seg *segs;
@@ -209,14 +160,14 @@ void *interp_build_take(struct interp_build *b,
 	base = (char *)segs - h.segs_at;
 	b->segs.at = NULL;
 	memcpy(base, &h, sizeof(h));
-	write_nodes(b, n + 1, &h, (void *)(base + h.nodes_at), threads);
+	write_nodes(b, n + 1, &h, (void *)(base + h.nodes_at));
 	if (!ended) {
 		segs[n] = (struct interp_seg) {
 			.kind = INTERP_END, .s_mm = b->length_mm,
 			.line = segs[n - 1].line, .cond = b->cond,
 		};
 	}
-	write_tables(b, &h, base, threads);
+	write_tables(b, &h, base);
 	if (interp_program_map(&p, base, h.bytes) == 0 &&
 	    interp_limits_write(&l, &p, segs,
 				(void *)(base + h.bends_at)) < 0) {

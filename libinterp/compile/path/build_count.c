@@ -145,7 +145,6 @@ int build_count_rest(struct interp_build *b)
 	o.from = NULL;
 	o.memory = NULL;
 	o.begins_inside = false;
-	o.threads = 1;
 	/* Lines take the way of those that may be held back. */
 	o.fit_mm = INFINITY;
 	counter = interp_build_create(&o);

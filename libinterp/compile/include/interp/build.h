@@ -8,9 +8,6 @@
  * column); or -ENOMEM.  After an error the builder can only be destroyed.
  *
  * Threads: allocates; one object belongs to one thread.  Never in the cycle.
- * For a long program it has a thread of its own, which ends in
- * interp_build_take() or interp_build_destroy() at the latest; common/both.h
- * says on which processors.
  */
 #ifndef INTERP_BUILD_H
 #define INTERP_BUILD_H
@@ -60,9 +57,6 @@ struct interp_build_options {
 						 * not known */
 	const struct interp_build_memory *memory;	/* lent; NULL: the
 							 * heap */
-	uint32_t threads;		/* that work on a long program, with the
-					 * caller's: 1 or 2; 0: as many as there
-					 * are processors for them */
 };
 
 /* What a segment carries beside its geometry. */
