@@ -18,100 +18,24 @@
 
 #include <ctype.h>
 
-/* A number of eight digits at most. */
-#define WIDE	99999999
-
 /* A line of such words is shorter, and so is what is left of it. */
 #define MOST_BYTES	(8 + NC_PATTERN_WORDS * 16)
 
-static bool in_range(const struct nc_pattern_word *word, double v)
-{
-	const struct nc_word *w = &nc_words[word->slot];
-
-	return v >= w->min && v <= w->max && (!w->whole || nc_is_whole(v));
-}
-
-/* Is @v, from @first to @end, a value of @word and nothing else?  A length
+/* Is @v, from @first to @end, a value of @slot and nothing else?  A length
  * without a point may be another one; C120 is a condition. */
-static bool takes(const struct nc_reader *r, const struct nc_pattern_word *w,
-		  const uint8_t *first, const uint8_t *end, double v)
+static inline bool takes(const struct nc_reader *r, unsigned int slot,
+			 const uint8_t *first, const uint8_t *end, double v)
 {
-	return in_range(w, v) &&
-	       (!((r->lengths | NC_BIT(NC_C)) & NC_BIT(w->slot)) ||
+	const struct nc_word *w = &nc_words[slot];
+
+	return v >= w->min && v <= w->max && (!w->whole || nc_is_whole(v)) &&
+	       (!((r->lengths | NC_BIT(NC_C)) & NC_BIT(slot)) ||
 		memchr(first, '.', (size_t)(end - first)));
-}
-
-/*
- * A number often has as many digits as the same word had in the line before,
- * and its point at the same place.  Then each byte of `w ^ text` is the value
- * of a digit, and 0 for the point.  `+ top` sets bit 7 of each byte that is
- * neither.  The character behind the number is compared with what follows.
- *
- * Return: the place behind the number, or NULL.
- */
-static inline const uint8_t *read_like(const struct nc_form *f,
-				       const uint8_t *p, double *ret)
-{
-	const bool negative = *p == '-';
-	uint64_t w;
-
-	memcpy(&w, p + negative, sizeof(w));
-	w ^= f->text;
-	if (((w + f->top) | w) & f->bytes)
-		return NULL;
-	w = (((w >> 8) ^ w) & f->before) ^ (w >> 8);
-	*ret = nc_eight_digits(w << f->shift) / f->scale;
-	if (negative)
-		*ret = -*ret;
-	return p + negative + f->length;
-}
-
-/* It is never found. */
-static const struct nc_form no_form = { .top = 0x80, .bytes = 0x80 };
-
-/* The form of the number from @p to @end, if it is short, and digits and a
- * point. */
-static void take_form(struct nc_form *f, const uint8_t *p, const uint8_t *end)
-{
-	const size_t n = (size_t)(end - (p += *p == '-'));
-	const uint64_t bytes = NC_ALL(0x01) >> (n < 8 ? 64 - 8 * n : 0);
-	uint64_t w, point;
-
-	if (__BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__ || n > 8)
-		return;
-	memcpy(&w, p, sizeof(w));
-	point = nc_no_digits(w ^ NC_ALL('0')) >> 7 & bytes;
-	if (point & (point - 1) || (point && !memchr(p, '.', n)))
-		return;
-	*f = (struct nc_form) {
-		.text = bytes * '0' ^ point * ('0' ^ '.'),
-		.top = bytes * 0x76 + point * 0x09,
-		.bytes = bytes * 0x80,
-		.before = point - 1,
-		.scale = nc_pow10[point ? n - 1 -
-				  (size_t)__builtin_ctzll(point) / 8 : 0],
-		.shift = (uint8_t)(64 - 8 * (n - (point != 0))),
-		.length = (uint8_t)n,
-	};
-}
-
-/* The number at @first, of any form; the next one is expected in that form.
- * Few are read here, and the loop keeps its registers for the others. */
-__attribute__((noinline))
-static const uint8_t *read_any(struct nc_reader *r, struct nc_pattern_word *w,
-			       const uint8_t *first, double *ret)
-{
-	const uint8_t *p = nc_number(first, r->stop, ret);
-
-	if (!p || r->stop - p < MOST_BYTES || !takes(r, w, first, p, *ret))
-		return NULL;
-	take_form(&w->form, first, p);
-	return p;
 }
 
 bool nc_scan_again(struct nc_reader *r)
 {
-	struct nc_pattern *pattern = &r->pattern;
+	const struct nc_pattern *pattern = &r->pattern;
 	struct nc_block *b = &r->block;
 	const uint8_t *p = r->at;
 
@@ -121,18 +45,17 @@ bool nc_scan_again(struct nc_reader *r)
 	if (r->stop - p < MOST_BYTES)
 		return false;
 	for (uint32_t i = 0; i < pattern->n; i++) {
-		struct nc_pattern_word *w = &pattern->word[i];
+		const struct nc_pattern_word *w = &pattern->word[i];
 		const uint8_t *first = p + w->bytes;
-		const size_t slot = w->slot;
+		const unsigned int slot = w->slot;
 		uint64_t text;
 
 		memcpy(&text, p, sizeof(text));
 		if ((text ^ w->text) & w->mask)
 			return false;
-		p = read_like(&w->form, first, &b->value[slot]);
-		if (!p)
-			p = read_any(r, w, first, &b->value[slot]);
-		if (!p || (w->narrow && !in_range(w, b->value[slot])))
+		p = nc_number(first, r->stop, &b->value[slot]);
+		if (!p || r->stop - p < MOST_BYTES ||
+		    !takes(r, slot, first, p, b->value[slot]))
 			return false;
 		b->at[slot] = first - 1;
 	}
@@ -175,7 +98,6 @@ static const uint8_t *add_word(struct nc_reader *r, const uint8_t *p,
 			       unsigned int slot)
 {
 	struct nc_pattern_word *w = &r->pattern.word[r->pattern.n];
-	const struct nc_word *word = &nc_words[slot];
 	const uint8_t *letter = r->block.at[slot];
 	uint8_t text[sizeof(w->text)] = { 0 }, mask[sizeof(w->mask)] = { 0 };
 	double v;
@@ -193,8 +115,6 @@ static const uint8_t *add_word(struct nc_reader *r, const uint8_t *p,
 	memcpy(&w->text, text, sizeof(text));
 	memcpy(&w->mask, mask, sizeof(mask));
 	w->slot = (uint8_t)slot;
-	w->narrow = word->whole || word->min > -WIDE || word->max < WIDE;
-	w->form = no_form;
 	r->pattern.n++;
 	return nc_number(p, r->stop, &v);
 }

@@ -91,23 +91,11 @@ struct nc_block {
 /* A line up to its numbers: again.c. */
 #define NC_PATTERN_WORDS	8
 
-/* A number up to its digits. */
-struct nc_form {
-	uint64_t text;			/* 0 for each digit */
-	uint64_t top, bytes;		/* read_like() */
-	uint64_t before;		/* the bytes in front of its point */
-	double scale;			/* 10 for each digit behind it */
-	uint8_t shift, length;		/* bits to the top of a word; bytes */
-};
-
 struct nc_pattern_word {
 	uint64_t text, mask;		/* what is in front of its number, with
 					 * its letter; and which bytes of it */
-	struct nc_form form;		/* of the number it had last */
 	uint8_t bytes;			/* that are in front of it */
 	uint8_t slot;
-	bool narrow;			/* it does not take every number of
-					 * eight digits */
 };
 
 struct nc_pattern {
