@@ -37,6 +37,7 @@ static uint8_t flags_of(const struct cycle *c)
 		[4] = c->fault.first != FAULT_NONE,
 		[5] = c->out.pump,
 		[6] = c->loaded,
+		[7] = io_is_negative(&c->out),
 	};
 	uint8_t ret = 0;
 
@@ -47,7 +48,8 @@ static uint8_t flags_of(const struct cycle *c)
 
 _Static_assert(PLC_SPARK == 1 << 1 && PLC_RUNS == 1 << 2 &&
 	       PLC_HELD == 1 << 3 && PLC_FAULTY == 1 << 4 &&
-	       PLC_PUMP == 1 << 5 && PLC_LOADED == 1 << 6, "flags_of()");
+	       PLC_PUMP == 1 << 5 && PLC_LOADED == 1 << 6 &&
+	       PLC_NEGATIVE == 1 << 7, "flags_of()");
 
 void loop_plc_write(struct loop *l)
 {
@@ -65,6 +67,9 @@ void loop_plc_write(struct loop *l)
 		.line = l->program ? c->cursor.seg.line : 0,
 		.stand = (uint8_t)stand.why,
 		.stand_of = stand.of,
+		.electrode = (uint16_t)c->job.electrode,
+		.condition = (uint16_t)whole(c->out.cond_number, 0, UINT16_MAX),
+		.letter = (uint8_t)c->out.cond_letter,
 	};
 
 	memcpy(t.pos, c->out.target, sizeof(t.pos));

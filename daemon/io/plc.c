@@ -10,13 +10,15 @@
 #include <string.h>
 
 #define BEAT_MS		100		/* object 1017 begins with it */
-#define NTPDO		4
+#define NTPDO		5
+#define FIRST		NTPDO		/* EdmdCondition */
 #define STATE_OPERATES	0x05
 #define STATE_READY	0x7f		/* pre-operational */
 #define STATE_STOPPED	0x04
 #define FAULT_CODE	0xff00u		/* + number of the fault */
 
-static const uint16_t tpdo_id[NTPDO + 1] = { 0, 0x180, 0x280, 0x380, 0x480 };
+static const uint16_t tpdo_id[NTPDO + 1] = { 0, 0x180, 0x280, 0x380, 0x480,
+					     0x500 };
 
 /*
  * The objects that the PLC may write, as an NMT reset sets them. What had been
@@ -156,9 +158,13 @@ void plc_period(struct plc *p)
 static struct can_msg tpdo(struct plc *p, int n)
 {
 	struct can_msg m = { .id = (uint16_t)(tpdo_id[n] + p->node),
-			     .len = 8 };
+			     .len = n == FIRST ? 5 : 8 };
+	const uint8_t mcode = p->tell.mcode;
 
+	if (n == FIRST)
+		p->mcode = mcode;
 	if (n == 1) {
+		p->tell.mcode = p->mcode;
 		p->toggle = !p->toggle;
 		p->tell.flags = (uint8_t)((p->tell.flags & ~PLC_TOGGLE) |
 					  (p->toggle ? PLC_TOGGLE : 0));
@@ -170,6 +176,7 @@ static struct can_msg tpdo(struct plc *p, int n)
 			can_put(m.data + s->byte, plc_value(p, s),
 				(int)plc_bytes(s->type));
 	}
+	p->tell.mcode = mcode;
 	return m;
 }
 
@@ -208,7 +215,7 @@ static bool send_next(struct plc *p)
 {
 	if (p->send_in-- == 0) {
 		p->send_in = p->send_cycles - 1;
-		p->next = p->next == 0 ? 1 : p->next;
+		p->next = p->next == 0 ? FIRST : p->next;
 	}
 	if (!p->operational)
 		p->next = 0;
@@ -235,7 +242,8 @@ size_t plc_emit(struct plc *p, struct can_msg *ret)
 	p->answers = false;
 	if (send_next(p)) {
 		ret[n++] = tpdo(p, p->next);
-		p->next = p->next == NTPDO ? 0 : (uint8_t)(p->next + 1);
+		p->next = p->next == FIRST ? 1 :
+			  p->next == FIRST - 1 ? 0 : (uint8_t)(p->next + 1);
 	}
 	return n;
 }

@@ -26,7 +26,7 @@
 /* What edmd tells the PLC: whole numbers in the units of the table. */
 struct plc_tell {
 	uint8_t state;			/* enum shm_state */
-	uint8_t flags;			/* PLC_TOGGLE ... PLC_LOADED */
+	uint8_t flags;			/* PLC_TOGGLE ... PLC_NEGATIVE */
 	uint8_t fault;			/* enum cycle_fault */
 	uint8_t mcode;			/* M code that waits for the PLC; 0:
 					 * none */
@@ -37,6 +37,10 @@ struct plc_tell {
 	int32_t pos[PLC_NAXES];		/* pulses */
 	uint8_t stand;			/* enum stand_reason */
 	uint32_t stand_of;		/* words/stands.h */
+	uint16_t electrode;		/* that is to be in from here on; 0:
+					 * none */
+	uint16_t condition;		/* number of the one in force ... */
+	uint8_t letter;			/* ... ASCII; 0: none */
 };
 
 /* What the PLC asks for. */
@@ -69,7 +73,7 @@ struct plc_signal {
 	uint8_t sub;
 	enum plc_type type;
 	uint8_t pdo;			/* the TPDO or RPDO that it is in, 1 to
-					 * 4; 0: none */
+					 * 5; 0: none */
 	uint8_t byte;			/* its first byte in that */
 	bool asked;			/* the PLC writes it */
 	uint16_t offset;		/* in struct plc_tell or plc_ask */
@@ -109,6 +113,9 @@ struct plc {
 	struct can_msg answer;		/* of the SDO server, if ... */
 	bool answers;			/* ... this is set */
 	uint8_t next;			/* TPDO to send next; 0: none is due */
+	uint8_t mcode;			/* ... that EdmdStatus tells: never
+					 * before what EdmdCondition tells of
+					 * it */
 };
 
 /** plc_init() - nothing was heard yet, and permit is off. */

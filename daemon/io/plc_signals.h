@@ -51,6 +51,12 @@ S(0x2000, 9, U8, TELL, stand, 0, 0, 0, 255, "Stand", "", 1, \
   "why the job stands, or what it waits for; 0: neither") \
 S(0x2000, 10, U32, TELL, stand_of, 0, 0, 0, 4294967295, "StandOf", "", 1, \
   "what `Stand` is about: the number of the electrode to put in") \
+S(0x2000, 11, U16, TELL, electrode, 5, 0, 0, 9999, "Electrode", "", 1, \
+  "that is to be in the holder; in force with M6; 0: none") \
+S(0x2000, 12, U16, TELL, condition, 5, 2, 0, 65535, "Condition", "", 1, \
+  "number of the condition in force, as 120 of C120") \
+S(0x2000, 13, U8, TELL, letter, 5, 4, 0, 90, "ConditionLetter", "", 1, \
+  "its letter in ASCII, as 67 for C; 0: none was called") \
 S(0x2100, 1, U8, ASK, command, 1, 0, 0, 255, "Command", "", 1, "bits") \
 S(0x2100, 2, U8, ASK, locks, 1, 1, 0, 31, "Interlocks", "", 1, \
   "bits, each 1 while all is well") \
@@ -76,6 +82,7 @@ B(HELD,        "Flags", 3, "Held", "the machine stands on the path") \
 B(FAULTY,      "Flags", 4, "Faulty", "there is a fault; `Fault` tells which") \
 B(PUMP,        "Flags", 5, "Pump", "edmd asks for dielectric") \
 B(LOADED,      "Flags", 6, "Loaded", "a job is loaded or under way") \
+B(NEGATIVE,    "Flags", 7, "Negative", "the electrode is to be negative") \
 B(PERMIT,      "Command", 0, "Permit", "1: sparks and motion are allowed") \
 B(START,       "Command", 1, "Start", "rising edge: start, or go on") \
 B(HOLD,        "Command", 2, "Hold", "1: the machine is held") \
@@ -96,6 +103,7 @@ F(0x180, TELL, 1, "EdmdStatus") \
 F(0x280, TELL, 2, "EdmdJob") \
 F(0x380, TELL, 3, "EdmdPositionXY") \
 F(0x480, TELL, 4, "EdmdPositionZC") \
+F(0x500, TELL, 5, "EdmdCondition") \
 F(0x200, ASK,  1, "PlcRequest")
 
 /*
@@ -140,6 +148,7 @@ PLC_TPDO(O, 1, 0x1800, 0x180) \
 PLC_TPDO(O, 2, 0x1801, 0x280) \
 PLC_TPDO(O, 3, 0x1802, 0x380) \
 PLC_TPDO(O, 4, 0x1803, 0x480) \
+PLC_TPDO(O, 5, 0x1804, 0x500) \
 O(0x1a00, 0, U8, 6, FIXED, "TPDO1 mapping, objects") \
 PLC_MAPPED(O, TPDO1, 0x1a00, 1, 0x2000, 1, 8) \
 PLC_MAPPED(O, TPDO1, 0x1a00, 2, 0x2000, 2, 8) \
@@ -156,7 +165,11 @@ PLC_MAPPED(O, TPDO3, 0x1a02, 2, 0x2001, 2, 32) \
 O(0x1a03, 0, U8, 2, FIXED, "TPDO4 mapping, objects") \
 PLC_MAPPED(O, TPDO4, 0x1a03, 1, 0x2001, 3, 32) \
 PLC_MAPPED(O, TPDO4, 0x1a03, 2, 0x2001, 6, 32) \
-O(0x2000, 0, U8, 10, FIXED, "Machine, highest sub-index") \
+O(0x1a04, 0, U8, 3, FIXED, "TPDO5 mapping, objects") \
+PLC_MAPPED(O, TPDO5, 0x1a04, 1, 0x2000, 11, 16) \
+PLC_MAPPED(O, TPDO5, 0x1a04, 2, 0x2000, 12, 16) \
+PLC_MAPPED(O, TPDO5, 0x1a04, 3, 0x2000, 13, 8) \
+O(0x2000, 0, U8, 13, FIXED, "Machine, highest sub-index") \
 O(0x2001, 0, U8, 8, FIXED, "Positions, highest sub-index") \
 O(0x2100, 0, U8, 6, FIXED, "PLC, highest sub-index")
 

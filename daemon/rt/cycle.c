@@ -176,8 +176,7 @@ static void meet_action(struct cycle *c)
 		stand_held(c, STAND_OPTIONAL, 0);
 		break;
 	case ACTION_ELECTRODE:
-		stand_held(c, STAND_ELECTRODE, c->cursor.seg.arg &
-						~INTERP_ELECTRODE_STOP);
+		stand_held(c, STAND_ELECTRODE, c->job.electrode);
 		break;
 	case ACTION_END:
 		if (c->config.hold_at_end)

@@ -193,6 +193,7 @@ struct timed {
 
 /* Which actions of the program were done. */
 struct cycle_job {
+	uint32_t electrode;		/* that is to be in; 0: none */
 	uint32_t action_done;		/* all actions up to this segment */
 	bool dwelling;
 	uint64_t dwell_left;		/* cycles */

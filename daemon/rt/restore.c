@@ -61,6 +61,8 @@ static void restore_mcode(struct cycle *c, const struct cycle_past *past)
 {
 	c->mcode.number = past->mcode;
 	c->mcode.at = past->mcode_at;
+	if (past->mcode)
+		walk_meet_change(c, past->mcode_at);
 	/* The code was answered while the job stood. */
 	c->mcode.done = past->mcode == 0 && past->mcode_at != 0;
 }

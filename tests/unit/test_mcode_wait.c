@@ -31,6 +31,26 @@ static bool is_told(const struct rig *r, uint8_t number)
 	return r->c.mcode.number == number;
 }
 
+/* The same, and the code is that of a changer. */
+static void begin_change(struct rig *r, uint32_t electrode)
+{
+	struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	const struct interp_mcode m = { INTERP_MCODE_BEFORE,
+					INTERP_MCODE_REDO };
+
+	k.gap.retract_limit_mm = 2;
+	action(b, INTERP_ELECTRODE, 2);
+	cut_to(b, -3);
+	action(b, INTERP_MCODE, interp_mcode_arg(CODE, m));
+	action(b, INTERP_ELECTRODE, electrode);
+	cut_to(b, -6);
+	rig_load(r, b, &k);
+	r->in.plc = well();
+	step(r, OPEN_V);
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+}
+
 /* Cut on until the code is told. */
 static void meet(struct rig *r)
 {
@@ -396,6 +416,25 @@ static void a_new_job_owes_nothing_of_the_last(void **st)
 	rig_free(&r);
 }
 
+/* The code and the electrode that it is about are told in one period, and not
+ * before. */
+static void a_changer_is_told_the_electrode_with_its_code(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	begin_change(&r, 3);
+	for (int i = 0; i < 20000 && !is_told(&r, CODE); i++) {
+		assert_in_range(r.c.job.electrode, 0, 2);
+		step(&r, SPARKING_V);
+	}
+	assert_true(is_told(&r, CODE));
+	assert_int_equal(r.c.job.electrode, 3);
+	do_it(&r);
+	assert_int_equal(r.c.job.electrode, 3);
+	rig_free(&r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -414,6 +453,7 @@ int main(void)
 		cmocka_unit_test(a_lost_plc_is_a_fault_while_it_is_waited_for),
 		cmocka_unit_test(without_a_plc_it_is_passed),
 		cmocka_unit_test(a_new_job_owes_nothing_of_the_last),
+		cmocka_unit_test(a_changer_is_told_the_electrode_with_its_code),
 	};
 
 	return cmocka_run_group_tests_name("rt/mcode", tests, NULL, NULL);

@@ -437,11 +437,12 @@ static void tpdos_go_round_with_what_is_told(void **state)
 {
 	struct plc p = working();
 	struct can_msg out[PLC_EMITS];
-	int seen[5] = { 0 }, toggle = -1;
+	int seen[6] = { 0 }, toggle = -1;
 
 	(void)state;
 	p.tell = (struct plc_tell) { .state = 4, .gap = 4321, .feed = -17,
-				     .job = 9, .line = 77,
+				     .job = 9, .line = 77, .electrode = 3,
+				     .condition = 120, .letter = 'C',
 				     .pos = { -1, 2, -300000 } };
 	for (int i = 0; i < 1000; i++) {
 		int here = 0;
@@ -449,11 +450,17 @@ static void tpdos_go_round_with_what_is_told(void **state)
 		for (size_t k = 0, n = plc_emit(&p, out); k < n; k++) {
 			const struct can_msg *m = &out[k];
 
-			if ((m->id & 0xff) != 0x80 + NODE)
+			if ((m->id & 0xff) != 0x80 + NODE &&
+			    m->id != 0x500 + NODE)
 				continue;
 			here++;
 			seen[m->id >> 8]++;
-			if (m->id == 0x180 + NODE) {
+			assert_int_equal(m->len, m->id >> 8 == 5 ? 5 : 8);
+			if (m->id == 0x500 + NODE) {
+				assert_int_equal(can_get(m->data, 2), 3);
+				assert_int_equal(can_get(m->data + 2, 2), 120);
+				assert_int_equal(m->data[4], 'C');
+			} else if (m->id == 0x180 + NODE) {
 				assert_int_not_equal(m->data[1] & 1, toggle);
 				toggle = m->data[1] & 1;
 				assert_int_equal(m->data[0], 4);
@@ -470,8 +477,39 @@ static void tpdos_go_round_with_what_is_told(void **state)
 		}
 		assert_true(here <= 1);
 	}
-	for (int i = 1; i <= 4; i++)
+	for (int i = 1; i <= 5; i++)
 		assert_in_range(seen[i], 99, 101);
+}
+
+/* A changer must not be told M6 with the electrode of the one before, whenever
+ * in a round both change. */
+static void an_m_code_is_told_behind_its_electrode(void **state)
+{
+	struct can_msg out[PLC_EMITS];
+
+	(void)state;
+	for (int at = 0; at < 30; at++) {
+		struct plc p = working();
+		uint32_t electrode = 99;
+		bool told = false;
+
+		for (int i = 0; i < 60; i++) {
+			p.tell.electrode = i < at ? 2 : 3;
+			p.tell.mcode = i < at ? 0 : 6;
+			for (size_t k = 0, n = plc_emit(&p, out); k < n; k++) {
+				if (out[k].id == 0x500 + NODE)
+					electrode = can_get(out[k].data, 2);
+				if (out[k].id != 0x180 + NODE ||
+				    out[k].data[3] == 0)
+					continue;
+				assert_int_equal(out[k].data[3], 6);
+				assert_int_equal(electrode, 3);
+				told = true;
+			}
+			assert_int_equal(p.tell.mcode, i < at ? 0 : 6);
+		}
+		assert_true(told);
+	}
 }
 
 static void tpdos_are_sent_when_operational_only(void **state)
@@ -605,7 +643,7 @@ static void what_cannot_be_is_aborted_with_its_code(void **state)
 		bool operational;
 	} asks[] = {
 		{ 0x40, OBJECT(0x3000, 0), 0, 0x06020000, true },
-		{ 0x40, OBJECT(0x2000, 11), 0, 0x06090011, true },
+		{ 0x40, OBJECT(0x2000, 14), 0, 0x06090011, true },
 		{ 0x40, OBJECT(0x1018, 4), 0, 0x06090011, true },
 		{ 0x2f, OBJECT(0x3000, 0), 1, 0x06020000, false },
 		{ 0x2f, OBJECT(0x2100, 7), 1, 0x06090011, false },
@@ -740,6 +778,7 @@ int main(void)
 		cmocka_unit_test(without_a_turn_of_its_toggle_the_plc_is_dead),
 		cmocka_unit_test(a_turn_in_time_keeps_it_alive),
 		cmocka_unit_test(tpdos_go_round_with_what_is_told),
+		cmocka_unit_test(an_m_code_is_told_behind_its_electrode),
 		cmocka_unit_test(tpdos_are_sent_when_operational_only),
 		cmocka_unit_test(every_object_of_the_table_can_be_read),
 		cmocka_unit_test(the_plc_sets_the_time_of_the_heartbeat),

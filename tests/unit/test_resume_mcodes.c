@@ -19,6 +19,7 @@ static void begin_code(struct world *w, enum interp_mcode_sync sync,
 	loop_make(w);
 	cut_to(b, -1);
 	action(b, INTERP_MCODE, interp_mcode_arg(CODE, m));
+	action(b, INTERP_ELECTRODE, 3);
 	cut_to(b, -2);
 	load(w, b);
 	go_on(w);
@@ -76,9 +77,11 @@ static void an_m_code_that_waits_is_told_still_and_done_once(void **st)
 	(void)st;
 	begin_code(&w, INTERP_MCODE_BEFORE, INTERP_MCODE_SKIP);
 	meet(&w);
+	assert_int_equal(w.l.cycle.job.electrode, 3);
 	crash(&w);
 	periods(&w, OPEN_V, 5);
 	assert_int_equal(w.l.cycle.mcode.number, CODE);
+	assert_int_equal(w.l.cycle.job.electrode, 3);
 	/* The PLC had done it, and its answer came to nobody. */
 	w.in.plc.mcode_done = CODE;
 	period(&w, OPEN_V);

@@ -14,13 +14,14 @@ PLC = """
 [plc]
 interface = vcan1
 alive_ms = 1000
-m_before = 60
+m_before = 6 60
+m_stop = 6
 [sim]
 speed = 1
 """
 
-# 12 mm of positioning at 1 mm/s, then an M code, then a cut.
-CUT_JOB = "G21 G90\nG0 X12\nM60 G1 Z-5 F60\nM30\n"
+# 12 mm of positioning at 1 mm/s, a changer, then an M code, then a cut.
+CUT_JOB = "G21 G90 C120\nG0 X12\nT3 M6\nM60 G1 Z-5 F60\nM30\n"
 
 
 @pytest.fixture(scope="module")
@@ -64,6 +65,15 @@ def test_the_cut_waits_for_its_m_code(plc, kind):
     s = said(plc, kind)
     assert s["mcode"]["spark"] == 0 and s["mcode"]["fault"] in (0, "none")
     assert s["cut"]["spark"] == 1
+
+
+@both
+def test_a_changer_is_told_its_electrode_and_what_cuts(plc, kind):
+    s = said(plc, kind)
+    assert s["change"]["electrode"] == 3 and s["change"]["state"] == "travel"
+    assert (s["cut"]["letter"], s["cut"]["condition"]) == (ord("C"), 120)
+    assert "electrode  3" in plc.text(f"{kind}.txt") or \
+        "electrode 3" in plc.text(f"{kind}.txt")
 
 
 @both

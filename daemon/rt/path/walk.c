@@ -317,8 +317,19 @@ static bool is_change(const struct interp_seg *s)
 
 void walk_pass_change(struct cycle *c, const struct interp_seg *s)
 {
+	if (s->kind == INTERP_ELECTRODE)
+		c->job.electrode = s->arg & ~INTERP_ELECTRODE_STOP;
 	if (is_change(s))
 		c->back_mm = fmax(c->back_mm, s->s_mm);
+}
+
+void walk_meet_change(struct cycle *c, uint32_t mcode)
+{
+	const struct interp_program *p = &c->cursor.p;
+
+	if (mcode + 1 < p->head->nsegs &&
+	    p->segs[mcode + 1].kind == INTERP_ELECTRODE)
+		walk_pass_change(c, &p->segs[mcode + 1]);
 }
 
 static enum walk_deed stops_for(const struct cycle *c,
@@ -341,6 +352,8 @@ enum walk_deed walk_action(struct cycle *c)
 		return ACTION_END;
 	if (first && s.kind == INTERP_DWELL && !dwell_over(c, &s))
 		return ACTION_PASSED;
+	if (s.kind == INTERP_MCODE)
+		walk_meet_change(c, next);
 	if (s.kind == INTERP_MCODE && !mcode_meet(c, next, s.arg))
 		return ACTION_WAIT;
 	if (first && s.kind == INTERP_AUX)

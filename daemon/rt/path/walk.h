@@ -67,9 +67,14 @@ double walk_cut_mm(const struct cycle *c, double least_mm);
 /** walk_by() - @ds_mm along the path; updates out.target, feed and sums. */
 enum walk_result walk_by(struct cycle *c, double ds_mm);
 
-/** walk_pass_change() - if @s is a change of the electrode by a person, the way
- *  back ends at it: another electrode would go where the last one has cut. */
+/** walk_pass_change() - @s may say which electrode cuts from here on.  If a
+ *  person puts it in, the way back ends at it: another electrode would go where
+ *  the last one has cut. */
 void walk_pass_change(struct cycle *c, const struct interp_seg *s);
+
+/** walk_meet_change() - if the M code of segment @mcode is that of a changer,
+ *  the electrode behind it is the one that is asked for. */
+void walk_meet_change(struct cycle *c, uint32_t mcode);
 
 /** walk_action() - do the action in front, once. */
 enum walk_deed walk_action(struct cycle *c);

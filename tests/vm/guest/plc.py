@@ -15,7 +15,7 @@ import can
 NODE = 32
 STATES = ("?", "idle", "travel", "approach", "erode", "retract", "jump",
           "hold", "fault")
-BITS = {"Permit": 0, "Start": 1, "Hold": 2, "Reset": 3, "Alive": 7}
+BITS = {"Permit": 0, "Start": 1, "Hold": 2, "Reset": 3, "Done": 4, "Alive": 7}
 LOCKS = 0x1f
 
 
@@ -104,6 +104,7 @@ class EdsPlc(Plc):
         self.node.rpdo.read()
         self.node.tpdo[1].add_callback(self.heard)
         self.node.tpdo[2].add_callback(self.heard_job)
+        self.node.tpdo[5].add_callback(self.heard_condition)
         self.node.nmt.state = "OPERATIONAL"
         super().__init__()
 
@@ -127,6 +128,12 @@ class EdsPlc(Plc):
     def heard_job(self, pdo):
         self.seen.update(job=pdo["Machine.Job"].raw,
                          line=pdo["Machine.Line"].raw)
+
+
+    def heard_condition(self, pdo):
+        self.seen.update(electrode=pdo["Machine.Electrode"].raw,
+                         condition=pdo["Machine.Condition"].raw,
+                         letter=pdo["Machine.ConditionLetter"].raw)
 
 
 class DbcPlc(Plc):
@@ -166,6 +173,10 @@ class DbcPlc(Plc):
                      feed=s["Feed"])
         elif message.name == "EdmdJob":
             self.seen.update(job=s["Job"], line=s["Line"])
+        elif message.name == "EdmdCondition":
+            self.seen.update(electrode=s["Electrode"],
+                             condition=s["Condition"],
+                             letter=s["ConditionLetter"])
 
 
 def feed_with(plc, override):
@@ -215,10 +226,11 @@ def drive(plc, ret):
     ret["started"] = plc.until_state("travel")
     ret["feed"] = [feed_with(plc, o) for o in (100, 40, 100)]
 
-    ret["mcode"] = plc.until(lambda s: s["mcode"] == 60)
-    plc.say(done=60)
-    plc.until(lambda s: s["mcode"] == 0)
-    plc.say(done=0)
+    for name, code in (("change", 6), ("mcode", 60)):
+        ret[name] = plc.until(lambda s: s["mcode"] == code)
+        plc.say(done=code)
+        plc.until(lambda s: s["mcode"] == 0)
+        plc.say(done=0)
     ret["cut"] = cutting(plc)
 
     plc.say(Hold=1)

@@ -10,7 +10,8 @@ ip link set vcan1 up
 for plc in eds dbc bad; do
 	edmd_start $R/edmd plc.ini
 	jobs_start plc.ini
-	ctl submit --hold cut.ngc > $plc.txt 2>&1
+	ctl electrode add 3 name=rib > $plc.txt 2>&1
+	ctl submit --hold cut.ngc >> $plc.txt 2>&1
 	ctl submit --hold cut.ngc >> $plc.txt 2>&1
 	$PYTHON plc.py $plc vcan1 > $plc.json 2>> $plc.txt
 	echo $? > $plc.rc
