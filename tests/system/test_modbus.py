@@ -191,6 +191,21 @@ def test_its_own_fault_is_told_in_its_words(sums):
     assert values["generator_fault"] == "2 too warm"
 
 
+def test_the_fleet_hears_what_it_tells(sums):
+    sums.slave.count(0x20010, 7, 10, fault=1)
+    sums.c.status_where(lambda s: s.told_sparks == 0x20)
+    dds = subprocess.Popen([rig.BUILD / "edm-dds", "--config", sums.m.config])
+    try:
+        p = subprocess.run([rig.BUILD / "edm-fleet", "--once", "--json"],
+                           capture_output=True, text=True, timeout=60)
+    finally:
+        dds.terminate()
+        dds.wait(60)
+    [m] = json.loads(p.stdout)["machines"]
+    assert m["told_sparks"] == 0x20 and m["told_opens"] is None
+    assert m["generator_fault"] == "1 no water"
+
+
 def test_one_that_lies_ends_the_sparks(shop):
     shop.cut()
     shop.slave.lies[10] = 75

@@ -62,6 +62,31 @@ source = lines
 retract_wait_s = 60
 """
 
+# A generator on the rest of the second chip.
+GENERATOR = GAP.replace("pump = 7\n", "") + """
+[generator]
+interface = lines
+peak_a = lines sim1:2 sim1:3 !sim1:4 weights 3 6 12
+on_us = lines sim1:5 sim1:6 codes 2 4 8 16
+polarity = line sim1:7
+pump = line sim1:8
+sense = line sim1:9
+settle_ms = 50
+polarity_ms = 100
+[tech]
+table = levels.tech
+"""
+
+LEVELS = """condition, peak_a [A], on_us [us], polarity
+C001, 6, 8, 1
+C002, 16, 4, -1
+C003, 16, 16, -1
+"""
+
+LEVELS_JOB = ("G21 G90 T84\nC001\nG1 X0.02 F6\nC002\nG1 X0.04\nC003\nG1 X0.06\n"
+              "C001\nG1 X0.04\nM30\n")
+FEEL_JOB = "G21 G90\nC001\nG80 X+\nM30\n"
+
 # Two counts of the encoder are a pulse.
 ENCODER = LINES + """
 encoder_X = 24 25

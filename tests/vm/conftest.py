@@ -7,7 +7,8 @@ import subprocess
 
 import power
 import pytest
-from boot import (ADC, BRAKES, BUILD, BUILD_VM, CIRCLE, CUT, EDGES, FAR, GAP, GAP_FRAMES, HERE, LINES, ROUNDS,
+from boot import (ADC, BRAKES, BUILD, BUILD_VM, CIRCLE, CUT, EDGES, FAR, GAP, GAP_FRAMES, GENERATOR, HERE, LEVELS,
+                  FEEL_JOB, LEVELS_JOB, LINES, ROUNDS,
                   ENCODER, QUICK_JOB, ROOT, Run, SHARED, SLOW_JOB, STRICT_REFUSED, STRICT_UP, TO_AND_FRO,
                   UNRULY_SCENES, VIRTUAL, checked, drives, lagging, machine)
 
@@ -27,6 +28,8 @@ def plain():
         "null.ini": machine("null"),
         "sim.ini": machine("sim", tail="[sim]\nspeed = 5\n"),
         "gap.ini": machine(tail=GAP),
+        "generator.ini": machine(tail=GENERATOR),
+        "levels.tech": LEVELS, "levels.ngc": LEVELS_JOB, "feel.ngc": FEEL_JOB,
         "no-chip.ini": machine(tail=LINES.replace("sim0", "sim7")),
         "no-line.ini": machine(tail=LINES + "pump = 32\n"),
         "busy.ini": machine(tail=LINES + "pump = 6\n"),

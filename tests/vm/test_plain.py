@@ -50,6 +50,52 @@ def test_doctor_tells_how_fast_a_line_goes(plain):
     assert "edges_per_period = " in text, text
 
 
+# The levels of sim1:2 ... 7 in each condition: weights 3 6 and 12, which is low
+# when it is on; the code of the on time; polarity.  16 A are 15.
+LEVELS = {"C001": (0, 1, 1, 0, 1, 0), "C002": (1, 0, 0, 1, 0, 1),
+          "C003": (1, 0, 0, 1, 1, 1)}
+
+
+def sparks_of(text):
+    """Levels of the lines while the sparks are on, in order, and how long the
+    sparks were off before, in s."""
+    level, off_s, found = dict.fromkeys(range(10), 0), 0, []
+    for row in text.splitlines():
+        t, line, value, _ = row.split()
+        t, line, value = float(t), int(line), int(value)
+        if line == 0 and value and not level[0]:
+            assert level[8] and not level[9], row
+            now = tuple(level[i] for i in range(2, 8))
+            if not found or found[-1][0] != now:
+                found.append((now, t - off_s))
+        if line == 0 and not value and level[0]:
+            off_s = t
+        if line > 1 and value != level[line]:
+            assert not level[0], row
+        level[line] = value
+    return found
+
+
+def test_lines_of_a_generator_change_only_without_sparks(plain):
+    assert plain.text("generator.rc") == "0\n", plain.text("generator")
+    found = sparks_of(plain.text("generator.trace"))
+    assert [f[0] for f in found] == [
+        LEVELS[c] for c in ("C001", "C002", "C003", "C001")], found
+    # A change of polarity waits for polarity_ms, and settle_ms besides.
+    for (_, off_s), least_s in zip(found[1:], (0.15, 0.05, 0.15)):
+        assert off_s >= least_s - 0.002, found
+
+
+def test_the_voltage_to_feel_by_is_on_without_sparks_alone(plain):
+    rows = [r.split() for r in plain.text("generator.trace").splitlines()]
+    sense = [(float(t), level) for t, line, level, _ in rows if line == "9"]
+    on = next(t for t, level in sense if level == "1")
+    off = [t for t, level in sense if level == "0" and t > on]
+    assert off, plain.text("feel")
+    sparks = [float(t) for t, line, level, _ in rows if line == "0" and level == "1"]
+    assert sparks and not any(on <= t <= off[-1] for t in sparks)
+
+
 @pytest.mark.parametrize("when, spark", [
     ("approach", 1), ("erode", 1), ("retract", 0), ("e-stop", 0),
     ("limit-switch", 0), ("door", 0), ("dielectric", 0)])

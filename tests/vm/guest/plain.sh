@@ -39,6 +39,26 @@ refused rights nobody
 ctl doctor --pulses gpiochip0:9 > pulses 2>&1
 echo $? > pulses.rc
 
+# A generator on lines, in a gap that stays open.
+sense_is() { [ "$(level sim1 9)" = $1 ]; }
+cp levels.tech $R/
+pull sim0 20 up
+edmd_start $R/edmd generator.ini
+jobs_start generator.ini
+trace_start "gpio>=$(base sim1) && gpio<$(($(base sim1) + 10))"
+ctl submit --wait levels.ngc > generator 2>&1
+echo $? > generator.rc
+# It feels its way to contact, by the voltage that is there for that alone.
+ctl submit feel.ngc > feel 2>&1
+turns 100 sense_is 1 || echo "no sense voltage"
+pull sim0 20 down; pull sim0 22 up
+turns 100 sense_is 0 || echo "the sense voltage stays"
+pull sim0 22 down; pull sim0 20 up
+ctl stop >> feel 2>&1
+trace_end sim1 generator.trace
+daemons_end generator
+pull sim0 20 down
+
 # Switches: each is its fault; sparks and pump are off by then.
 pull sim0 20 up
 edmd_start $R/edmd gap.ini
