@@ -236,20 +236,22 @@ void eta_tell(const struct eta *l, struct eta_told *ret)
 	name_cause(l, &s, ret);
 }
 
-bool eta_rose(struct eta *l)
+bool eta_rose(struct eta *l, struct eta_told *ret)
 {
-	struct eta_told t;
+	bool is_news;
 
-	eta_tell(l, &t);
-	if (t.left_s < 0)
+	eta_tell(l, ret);
+	if (ret->left_s < 0)
 		return false;
-	if (t.left_s <= l->least_s * ROSE +
-			WHOLE_PART * (l->job_s + t.left_s)) {
-		l->least_s = fmin(l->least_s, t.left_s);
+	if (ret->left_s <= l->least_s * ROSE +
+			   WHOLE_PART * (l->job_s + ret->left_s)) {
+		l->least_s = fmin(l->least_s, ret->left_s);
 		return false;
 	}
-	l->least_s = t.left_s;
-	return true;
+	l->least_s = ret->left_s;
+	is_news = !l->cond[ret->cond].told;
+	l->cond[ret->cond].told = true;
+	return is_news;
 }
 
 const char *eta_word(enum eta_by by)

@@ -29,6 +29,7 @@ struct eta_cond {
 	double late_passed_s, late_expected_s;	/* what is long ago counts
 						 * less */
 	double all_s;			/* of all parts, as forecast */
+	bool told;			/* that the job takes longer by it */
 };
 
 /* Read, do not write; all 0 at first. */
@@ -74,8 +75,9 @@ void eta_look(struct eta *l, double far_mm, double job_s);
 void eta_tell(const struct eta *l, struct eta_told *ret);
 
 /** eta_rose() - does it take a tenth longer than it ever seemed to since this
- *  was true?  Then somebody should be told. */
-bool eta_rose(struct eta *l);
+ *  was so, by a condition that was not told yet?  Then somebody should be told;
+ *  @ret is the estimate. */
+bool eta_rose(struct eta *l, struct eta_told *ret);
 
 /** eta_word() - "", "forecast", "learnt", "cut". */
 const char *eta_word(enum eta_by by);

@@ -185,9 +185,8 @@ static void follow(struct jobs *j)
 
 	eta_look(&j->eta, s->far_mm, (double)s->job_cycles *
 		 (double)s->period_ns / 1e9);
-	if (!eta_rose(&j->eta))
+	if (!eta_rose(&j->eta, &t))
 		return;
-	eta_tell(&j->eta, &t);
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "longer", .job = j->queue.job.id,
 		.place_mm = s->place_mm,

@@ -143,6 +143,7 @@ static void a_dwell_counts_down(void **state)
 static void a_stall_does_not_rise_at_once(void **state)
 {
 	struct eta l = ready(10, 4);
+	struct eta_told t;
 	double s, was;
 
 	(void)state;
@@ -152,11 +153,30 @@ static void a_stall_does_not_rise_at_once(void **state)
 		eta_look(&l, 30, s + more);
 		assert_true(told(&l).left_s <= was * 1.1);
 	}
-	assert_false(eta_rose(&l));
+	assert_false(eta_rose(&l, &t));
 	eta_look(&l, 30, s + 300);
 	assert_true(told(&l).left_s > was * 1.1);
-	assert_true(eta_rose(&l));
-	assert_false(eta_rose(&l));	/* told once */
+	assert_true(eta_rose(&l, &t));
+	assert_false(eta_rose(&l, &t));	/* told once */
+	eta_fini(&l);
+}
+
+/* Ever slower: by the same condition it is told once. */
+static void it_is_told_once_for_each_cause(void **state)
+{
+	struct eta l = ready(10, 4);
+	struct eta_told t;
+	double s = 0;
+	int told_times = 0;
+
+	(void)state;
+	eta_look(&l, 0, 0);
+	for (int mm = 1; mm <= 40; mm++) {
+		s += 10 * (1 + mm / 5.0);
+		eta_look(&l, mm, s);
+		told_times += eta_rose(&l, &t);
+	}
+	assert_int_equal(told_times, 1);
 	eta_fini(&l);
 }
 
@@ -208,6 +228,7 @@ static void a_job_that_cuts_nothing_has_an_estimate(void **state)
 static void without_a_forecast_there_is_none(void **state)
 {
 	struct forecast f = { .why_not = "no-contact" };
+	struct eta_told t;
 	struct eta l = { .n = 0 };
 
 	(void)state;
@@ -216,7 +237,7 @@ static void without_a_forecast_there_is_none(void **state)
 	assert_int_equal(eta_give(&l, &f, 7), 0);
 	eta_look(&l, 3, 4);
 	assert_int_equal(told(&l).by, ETA_NONE);
-	assert_false(eta_rose(&l));
+	assert_false(eta_rose(&l, &t));
 	eta_fini(&l);
 }
 
@@ -229,6 +250,7 @@ int main(void)
 		cmocka_unit_test(each_condition_has_its_own_factor),
 		cmocka_unit_test(a_dwell_counts_down),
 		cmocka_unit_test(a_stall_does_not_rise_at_once),
+		cmocka_unit_test(it_is_told_once_for_each_cause),
 		cmocka_unit_test(what_was_learnt_is_where_it_begins),
 		cmocka_unit_test(it_may_come_in_the_middle),
 		cmocka_unit_test(a_job_that_cuts_nothing_has_an_estimate),

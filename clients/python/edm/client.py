@@ -404,6 +404,10 @@ class Client:
         assert self._status is not None
         return self._status
 
+    def last_status(self) -> tuple[Status | None, int]:
+        """The last one that hear() took, and how many there were."""
+        return self._status, self._statuses
+
     def follow(self, job: str) -> Iterator[Status]:
         """Statuses, until the job has ended."""
         while self.show(job)["state"] not in OVER:

@@ -1,0 +1,495 @@
+# SPDX-License-Identifier: Apache-2.0
+"""edm-notify: calls somebody when a machine needs a person, or has a job done.
+
+README.md beside the package has the file and what is told.  What a machine
+needs is taken from its STATUS, so it is known however late one begins to
+listen, and is over when the machine says so.
+"""
+
+from __future__ import annotations
+
+import argparse
+import configparser
+import contextlib
+import importlib
+import json
+import os
+import shlex
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from .client import Client, NoAnswer, Refused
+from .keys import KeyFileError
+from .messages import Event, Status
+
+KINDS = ("fault", "stands", "interrupted", "lost", "done")
+# What somebody has done himself needs no call.
+OWN_STANDS = ("", "ready", "held", "reset")
+SEND_S, SILENT_S = 15.0, 10.0
+AGAIN_S, AGAIN_MAX_S = 5.0, 300.0
+WAITING_MAX = 200
+
+
+class Wrong(Exception):
+    """The file cannot be used; says what would be accepted."""
+
+
+@dataclass(frozen=True)
+class Message:
+    """One call."""
+
+    cause: str
+    kind: str
+    machine: str
+    job: str
+    title: str
+    text: str
+    link: str
+    utime: int
+
+
+# -- Ways to somebody: each raises an Exception if it did not get there
+
+
+def _command(line: str) -> Callable[[Message], None]:
+    words = shlex.split(line)
+    if not words:
+        raise Wrong("command: without a program; command:/path/program")
+
+    def send(m: Message) -> None:
+        subprocess.run(
+            words, input=json.dumps(asdict(m)), text=True, check=True,
+            timeout=SEND_S, env=os.environ | {
+                "EDM_" + k.upper(): str(v) for k, v in asdict(m).items()})
+    return send
+
+
+def _webhook(url: str) -> Callable[[Message], None]:
+    def send(m: Message) -> None:
+        r = urllib.request.Request(
+            url, json.dumps(asdict(m)).encode(),
+            {"Content-Type": "application/json"})
+        with urllib.request.urlopen(r, timeout=SEND_S):
+            pass
+    return send
+
+
+def _mqtt(url: str) -> Callable[[Message], None]:
+    at = urlsplit(url)
+    topic = at.path.lstrip("/")
+    if not at.hostname or not topic or set(url) & set("+#"):
+        raise Wrong(f"{at.scheme}://{at.hostname or ''}/{topic}: an address "
+                    "and a topic without + and #; mqtt://HOST/shop/edm")
+    auth = ({"username": at.username, "password": at.password}
+            if at.username else None)
+    try:
+        publish = importlib.import_module("paho.mqtt.publish")
+    except ImportError:
+        raise Wrong("mqtt needs paho-mqtt; pip install paho-mqtt, or apt "
+                    "install python3-paho-mqtt") from None
+
+    def send(m: Message) -> None:
+        publish.single(topic, json.dumps(asdict(m)), qos=1,
+                       hostname=at.hostname, auth=auth, port=at.port or
+                       (8883 if at.scheme == "mqtts" else 1883),
+                       tls={} if at.scheme == "mqtts" else None)
+    return send
+
+
+def _apprise(url: str) -> Callable[[Message], None]:
+    scheme = urlsplit(url).scheme or "?"
+    try:
+        apprise = importlib.import_module("apprise")
+    except ImportError:
+        raise Wrong(f"{scheme}: needs apprise; pip install apprise.  Without "
+                    "it there are command:, http:, https: and mqtt:") from None
+    to = apprise.Apprise()
+    if not to.add(url):
+        raise Wrong(f"{scheme}: apprise does not understand this URL")
+
+    def send(m: Message) -> None:
+        body = m.text + (f"\n{m.link}" if m.link else "")
+        if not to.notify(title=m.title, body=body):
+            raise OSError("apprise could not send it")
+    return send
+
+
+def way_of(url: str) -> Callable[[Message], None]:
+    """How to send to this URL.  Raises Wrong."""
+    if url.startswith("command:"):
+        return _command(url[len("command:"):])
+    if url.startswith(("http://", "https://")):
+        return _webhook(url)
+    return _mqtt(url) if url.startswith(("mqtt://", "mqtts://")) else \
+        _apprise(url)
+
+
+class Target:
+    """Somebody who is called, by a thread of his own: a way that hangs keeps
+    nobody waiting.  Of a cause only the last message waits."""
+
+    def __init__(self, name: str, url: str, kinds: tuple[str, ...]) -> None:
+        self.name, self.kinds = name, kinds
+        self._send = way_of(url)
+        self._waits: OrderedDict[str, Message] = OrderedDict()
+        self._new, self._down = threading.Condition(), False
+        threading.Thread(target=self._run, daemon=True).start()
+
+    def put(self, m: Message) -> None:
+        """Send it, now or when the way is there again."""
+        if m.kind not in self.kinds:
+            return
+        with self._new:
+            self._waits[m.cause] = m
+            if len(self._waits) > WAITING_MAX:
+                lost = self._waits.popitem(last=False)[1]
+                say(f"{self.name}: over {WAITING_MAX} wait; given up: "
+                    f"{lost.text}")
+            self._new.notify()
+
+    def is_empty(self) -> bool:
+        """Has all got there?"""
+        with self._new:
+            return not self._waits
+
+    def _try(self, m: Message) -> bool:
+        try:
+            self._send(m)
+        except Exception as e:  # whatever a service has to say
+            if not self._down:
+                say(f"{self.name}: not sent, goes on trying: "
+                    f"{type(e).__name__}: {e}")
+            self._down = True
+            return False
+        if self._down:
+            say(f"{self.name}: is there again")
+        self._down = False
+        return True
+
+    def _run(self) -> None:
+        pause = AGAIN_S
+        while True:
+            with self._new:
+                while not self._waits:
+                    self._new.wait()
+                m = next(iter(self._waits.values()))
+            if self._try(m):
+                pause = AGAIN_S
+                with self._new:
+                    if self._waits.get(m.cause) is m:
+                        del self._waits[m.cause]
+            else:
+                time.sleep(pause)
+                pause = min(pause * 2, AGAIN_MAX_S)
+
+
+def say(text: str) -> None:
+    """To the journal."""
+    print(f"edm-notify: {text}", file=sys.stderr, flush=True)
+
+
+# -- What is to be told
+
+
+def _needs(machine: str, s: Status | None, silent: bool) -> dict[str, Message]:
+    """What the machine needs of a person now, by its cause."""
+    if silent:
+        return {"lost": _message("lost", "lost", machine, s or Status(),
+                                 "edmd-jobs does not answer")}
+    assert s is not None
+    found = {}
+    if s.daemon != "ok":
+        found["lost"] = _message("lost", "lost", machine, s,
+                                 f"edmd is {s.daemon}")
+    if s.fault not in ("", "none"):
+        cause = f"fault {s.fault} {s.job}"
+        found[cause] = _message(cause, "fault", machine, s,
+                                f"fault {s.faults or s.fault}, line {s.line}; "
+                                "edmctl alarms says why and what clears it")
+    elif s.interrupted:
+        cause = f"interrupted {s.interrupted}"
+        found[cause] = _message(cause, "interrupted", machine, s,
+                                f"job {s.interrupted} was cut off; look at "
+                                "the work, then resume or remove it")
+    elif s.asks and s.stand not in OWN_STANDS:
+        cause = f"stands {s.stand} {s.job} {s.line}"
+        found[cause] = _message(cause, "stands", machine, s,
+                                f"line {s.line}: {s.asks}")
+    return found
+
+
+def _message(cause: str, kind: str, machine: str, s: Status,
+             text: str) -> Message:
+    job = s.job_name or s.job
+    return Message(cause, kind, machine, s.job, f"{machine}: {kind}",
+                   f"{job}: {text}" if job else text, "", s.utime)
+
+
+def is_quiet(hours: tuple[int, int] | None, minute: int) -> bool:
+    """minute: of the day.  Hours may go over midnight."""
+    if hours is None:
+        return False
+    begin, end = hours
+    return (begin <= minute < end if begin <= end else
+            minute >= begin or minute < end)
+
+
+@dataclass
+class Told:
+    """A cause that was told: when last, and whether somebody has seen it."""
+
+    at: float
+    seen: bool = False
+
+
+class Caller:
+    """Decides who is told what, and when.  now: seconds since 1970."""
+
+    def __init__(self, rules: Rules, targets: list[Target]) -> None:
+        self.rules, self.targets = rules, targets
+        self.told: dict[str, Told] = {}
+        self.later: list[Message] = []      # of quiet hours
+        self._read()
+
+    def _read(self) -> None:
+        with contextlib.suppress(OSError, ValueError, TypeError):
+            old = json.loads(self.rules.file("told.json").read_text())
+            self.told = {k: Told(float(v[0]), bool(v[1]))
+                         for k, v in old.items()}
+
+    def _write(self) -> None:
+        new = self.rules.file("told.json.new")
+        try:
+            new.write_text(json.dumps({
+                k: (v.at, v.seen) for k, v in self.told.items()}))
+            new.replace(self.rules.file("told.json"))
+        except OSError as e:
+            say(f"{new}: {e.strerror}; after a restart it is told again")
+
+    def _put(self, m: Message) -> None:
+        for t in self.targets:
+            t.put(Message(**(asdict(m) | {"link": self.rules.page})))
+
+    def _was_seen(self, since: float) -> bool:
+        try:
+            return self.rules.file("seen").stat().st_mtime > since
+        except OSError:
+            return False
+
+    def look(self, needs: dict[str, Message], now: float, quiet: bool) -> None:
+        """What the machine needs now; what it does not need any more is
+        over.  While it is lost nobody knows."""
+        before = {k: (v.at, v.seen) for k, v in self.told.items()}
+        self.told = {k: v for k, v in self.told.items()
+                     if k in needs or "lost" in needs}
+        for cause, m in needs.items():
+            t = self.told.get(cause)
+            if t and not t.seen:
+                t.seen = self._was_seen(t.at)
+            if quiet and m.kind not in self.rules.always:
+                continue
+            every = self.rules.repeat_s
+            if t and (t.seen or every <= 0 or now - t.at < every):
+                continue
+            self.told[cause] = Told(now)
+            self._put(m)
+        if {k: (v.at, v.seen) for k, v in self.told.items()} != before:
+            self._write()
+        if not quiet:
+            for m in self.later:
+                self._put(m)
+            self.later = []
+
+    def ended(self, m: Message, quiet: bool) -> None:
+        """A job is over: told once, after the quiet hours if need be."""
+        if quiet and m.kind not in self.rules.always:
+            self.later = [*self.later, m][-WAITING_MAX:]
+        else:
+            self._put(m)
+
+
+# -- The file
+
+
+@dataclass(frozen=True)
+class Rules:
+    """[notify] of the file."""
+
+    machine: str
+    key: str | None
+    page: str
+    repeat_s: float
+    quiet: tuple[int, int] | None
+    always: tuple[str, ...]
+    state: Path
+
+    def file(self, name: str) -> Path:
+        """One of what is kept."""
+        return self.state / name
+
+
+def _minute(text: str) -> int:
+    hour, _, minute = text.strip().partition(":")
+    at = int(hour) * 60 + int(minute or 0)
+    if not 0 <= at <= 24 * 60:
+        raise ValueError
+    return at
+
+
+def _kinds(where: str, text: str) -> tuple[str, ...]:
+    found = tuple(text.replace(",", " ").split())
+    for k in found:
+        if k not in KINDS:
+            raise Wrong(f"{where}: '{k}'; some of {' '.join(KINDS)}")
+    return found
+
+
+def _quiet(text: str) -> tuple[int, int] | None:
+    if not text.strip():
+        return None
+    try:
+        begin, end = (_minute(x) for x in text.split("-"))
+    except ValueError:
+        raise Wrong(f"[notify] quiet = {text}; two times of the day, as "
+                    "22:00-06:30") from None
+    return begin, end
+
+
+def read_file(path: str) -> tuple[Rules, dict[str, tuple[str, Any]]]:
+    """The rules, and for each target its URL and kinds.  Raises Wrong."""
+    c = configparser.ConfigParser(interpolation=None)
+    try:
+        with open(path, encoding="utf-8") as f:
+            c.read_file(f)
+        n = c["notify"] if "notify" in c else c["DEFAULT"]
+        rules = Rules(
+            n.get("machine", "edm"), n.get("key"), n.get("page", ""),
+            60 * n.getfloat("repeat_min", fallback=10.0),
+            _quiet(n.get("quiet", "")),
+            _kinds("[notify] always", n.get("always", "")),
+            Path(n.get("state", "") or os.environ.get(
+                "RUNTIME_DIRECTORY", "/run/edm-notify")))
+        to = {s[3:]: (c[s]["url"], _kinds(f"[{s}] kinds", c[s].get(
+            "kinds", " ".join(KINDS)))) for s in c.sections()
+            if s.startswith("to.")}
+    except (OSError, UnicodeDecodeError, ValueError, KeyError,
+            configparser.Error) as e:
+        raise Wrong(f"{path}: {e}; README.md of the package has an example"
+                    ) from None
+    if not to:
+        raise Wrong(f"{path}: nobody to call; a section [to.NAME] with url =")
+    return rules, to
+
+
+# -- The service
+
+
+class Service:
+    """Follows one machine."""
+
+    def __init__(self, rules: Rules, caller: Caller) -> None:
+        self.rules, self.caller = rules, caller
+        self.status: Status | None = None
+        self.count, self.heard = -1, time.monotonic()
+
+    def _quiet(self) -> bool:
+        now = datetime.now()
+        return is_quiet(self.rules.quiet, now.hour * 60 + now.minute)
+
+    def on_event(self, e: Event) -> None:
+        """What is over in a moment is in no STATUS."""
+        if e.kind == "ended" and e.outcome == "done":
+            self.caller.ended(Message(
+                f"done {e.job} {e.utime}", "done", self.rules.machine, e.job,
+                f"{self.rules.machine}: done", e.text, "", e.utime),
+                self._quiet())
+
+    def look(self, c: Client) -> None:
+        """Take what came, and tell what there is to tell."""
+        c.hear(0.2)
+        s, n = c.last_status()
+        if n != self.count:
+            self.status, self.count = s, n
+            self.heard = time.monotonic()
+        silent = time.monotonic() - self.heard > SILENT_S
+        if self.status or silent:
+            self.caller.look(_needs(self.rules.machine, self.status, silent),
+                             time.time(), self._quiet())
+
+    def follow(self) -> None:
+        """Until the machine cannot be followed."""
+        with Client(self.rules.machine, self.rules.key) as c:
+            c.on_event = self.on_event
+            while True:
+                self.look(c)
+
+
+def serve(path: str) -> int:
+    """Never gives up: edmd-jobs may come later."""
+    rules, to = read_file(path)
+    targets = [Target(n, url, kinds) for n, (url, kinds) in to.items()]
+    service = Service(rules, Caller(rules, targets))
+    say(f"machine {rules.machine}, calls {' '.join(to)}")
+    while True:
+        try:
+            service.follow()
+        except (OSError, NoAnswer, Refused) as e:
+            say(f"{e}; goes on trying")
+            time.sleep(AGAIN_S)
+
+
+def try_all(path: str) -> int:
+    """A call to everybody, to see that it gets there."""
+    rules, to = read_file(path)
+    failed = 0
+    for name, (url, _) in to.items():
+        try:
+            way_of(url)(Message(
+                "test", "done", rules.machine, "", f"{rules.machine}: test",
+                "edm-notify calls you when the machine needs a person",
+                rules.page, time.time_ns() // 1000))
+            print(f"{name}: sent")
+        except Wrong:
+            raise
+        except Exception as e:  # whatever a service has to say
+            print(f"{name}: {type(e).__name__}: {e}")
+            failed = 1
+    return failed
+
+
+def main() -> int:
+    """Return: as sysexits.h."""
+    p = argparse.ArgumentParser(prog="edm-notify", description=__doc__)
+    p.add_argument("--config", default="/etc/edmd/notify.ini")
+    p.add_argument("--try", dest="test", action="store_true",
+                   help="call everybody once, and end")
+    p.add_argument("--seen", action="store_true",
+                   help="somebody is on the way: repeat nothing that was told")
+    a = p.parse_args()
+    try:
+        if a.seen:
+            read_file(a.config)[0].file("seen").touch()
+            return 0
+        return try_all(a.config) if a.test else serve(a.config)
+    except (Wrong, KeyFileError) as e:
+        say(str(e))
+        return 78
+    except OSError as e:
+        say(f"{e.filename}: {e.strerror}")
+        return 77
+    except KeyboardInterrupt:
+        return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

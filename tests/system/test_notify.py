@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: Apache-2.0
+"""edm-notify against a real broker and a web hook: who is called, and how
+often."""
+
+import contextlib
+import http.server
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+
+import pytest
+import rig
+from panel import free_port
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TABLE = "condition, servo_v\nC100, 20\n"
+MACHINE = rig.NULL_MACHINE + "\n[tech]\ntable = shop.tech\n"
+CHANGE = b"G21 G90 F600\nG0 Z2\nT3 M6\nG1 Z1\nG0 Z2\nM30\n"
+SHORT = b"G21 G90\nG0 X1\nM30\n"
+
+
+class Hook:
+    """A web hook of this test: keeps what it is sent; may be out of order."""
+
+    def __init__(self):
+        self.got, self.broken = [], False
+        outer = self
+
+        class Handler(http.server.BaseHTTPRequestHandler):
+            def do_POST(self):
+                body = self.rfile.read(int(self.headers["Content-Length"]))
+                if not outer.broken:
+                    outer.got.append(json.loads(body))
+                self.send_response(503 if outer.broken else 204)
+                self.end_headers()
+
+            def log_message(self, *_):
+                pass
+
+        self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0),
+                                                      Handler)
+        self.url = f"http://127.0.0.1:{self.server.server_port}/edm"
+        threading.Thread(target=self.server.serve_forever,
+                         daemon=True).start()
+
+    def kinds(self):
+        return [m.get("kind") for m in self.got]
+
+    def until(self, kind, n=1, timeout=30):
+        rig.until(lambda: self.kinds().count(kind) >= n, timeout)
+        return [m for m in self.got if m.get("kind") == kind]
+
+
+@pytest.fixture
+def hook():
+    h = Hook()
+    yield h
+    h.server.shutdown()
+    h.server.server_close()
+
+
+@pytest.fixture
+def shop(tmp_path):
+    with rig.Machine(tmp_path, MACHINE) as m:
+        (tmp_path / "shop.tech").write_text(TABLE)
+        m.start()
+        m.client.status_where(lambda s: s.daemon == "ok")
+        m.ctl("electrode", "add", "1"), m.ctl("electrode", "add", "3")
+        m.ctl("electrode", "use", "1")
+        yield m
+
+
+def run(config, *words, without=()):
+    """edm-notify; @without: modules that are not there."""
+    hide = "".join(f"sys.modules[{n!r}] = None; " for n in without)
+    return [sys.executable, "-c", f"import sys; {hide}"
+            "from edm.notify import main; sys.exit(main())",
+            "--config", str(config), *words]
+
+
+ENV = {**os.environ, "PYTHONPATH": str(ROOT / "clients/python")}
+
+
+@contextlib.contextmanager
+def notify(m, to, more="", without=()):
+    config = m.folder / "notify.ini"
+    state = m.folder / "state"
+    state.mkdir(exist_ok=True)
+    config.write_text(f"[notify]\nmachine = {m.name}\nstate = {state}\n"
+                      f"page = http://press-1:7680/\n{more}\n{to}\n")
+    with open(m.folder / "notify.log", "ab") as log:
+        p = subprocess.Popen(run(config, without=without), stderr=log,
+                             env=ENV | {"EDM_KEY": str(key_of(m))})
+    try:
+        rig.until(lambda: "calls" in said(m), 30)
+        yield config
+    finally:
+        assert p.poll() is None, said(m)
+        p.send_signal(signal.SIGTERM)
+        p.wait(20)
+
+
+def key_of(m):
+    return m.folder / "store" / f"{m.name}.key"
+
+
+def said(m):
+    return (m.folder / "notify.log").read_text()
+
+
+def change(m):
+    """It stands, and asks for electrode 3."""
+    m.client.submit(CHANGE, "work")
+    m.client.status_where(lambda s: s.stand == "electrode", 20)
+
+
+def go_on(m):
+    assert m.client.ask("done", arg=3).code == 0
+    assert m.client.ask("start").code == 0
+    m.client.job_where("work", "done", 30)
+
+
+def test_a_stand_and_the_end_are_told_once_each(shop, hook):
+    with notify(shop, f"[to.me]\nurl = {hook.url}"):
+        change(shop)
+        one, = hook.until("stands")
+        assert "put electrode 3 in" in one["text"] and "line 3" in one["text"]
+        assert one["machine"] == shop.name and one["job"] == "work"
+        assert one["link"] == "http://press-1:7680/"
+        go_on(shop)
+        done, = hook.until("done")
+        assert "job.ngc done" in done["text"]
+        shop.client.ask("estop")
+        fault, = hook.until("fault")
+        assert "e-stop" in fault["text"]
+        assert hook.kinds() == ["stands", "done", "fault"]
+
+
+def test_it_is_told_again_until_somebody_has_seen_it(shop, hook):
+    with notify(shop, f"[to.me]\nurl = {hook.url}",
+                "repeat_min = 0.02") as config:
+        change(shop)
+        hook.until("stands", 3)
+        r = subprocess.run(run(config, "--seen"), env=ENV, timeout=30)
+        assert r.returncode == 0
+        shop.client.hear(2)     # what was under way got there
+        n = len(hook.got)
+        shop.client.hear(4)
+        assert len(hook.got) == n
+        # Another cause is another thing to see.
+        go_on(shop)
+        shop.client.ask("estop")
+        hook.until("fault", 2)
+
+
+def test_a_restart_tells_nothing_twice(shop, hook):
+    change(shop)
+    for _ in range(2):
+        with notify(shop, f"[to.me]\nurl = {hook.url}"):
+            hook.until("stands")
+            shop.client.hear(2)
+    assert hook.kinds() == ["stands"]
+
+
+def test_quiet_hours_wait_but_for_what_is_always_told(shop, hook):
+    with notify(shop, f"[to.me]\nurl = {hook.url}",
+                "quiet = 00:00-24:00\nalways = fault"):
+        change(shop)
+        go_on(shop)
+        shop.client.ask("estop")
+        hook.until("fault")
+        assert hook.kinds() == ["fault"]
+
+
+@contextlib.contextmanager
+def broker(folder, port):
+    conf = folder / "mosquitto.conf"
+    conf.write_text(f"listener {port} 127.0.0.1\nallow_anonymous true\n")
+    p = subprocess.Popen(["mosquitto", "-c", str(conf)],
+                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        yield p
+    finally:
+        p.terminate()
+        p.wait(20)
+
+
+needs_broker = pytest.mark.skipif(
+    not shutil.which("mosquitto"), reason="mosquitto is not there")
+
+
+@needs_broker
+def test_a_broker_that_was_gone_gets_it_when_it_is_back(shop, hook, tmp_path):
+    mqtt = pytest.importorskip("paho.mqtt.client")
+    port, got = free_port(), []
+    to = (f"[to.shop]\nurl = mqtt://127.0.0.1:{port}/shop/edm\n"
+          f"[to.me]\nurl = {hook.url}\nkinds = stands")
+    with notify(shop, to):
+        change(shop)
+        hook.until("stands")    # the other one does not wait for the broker
+        rig.until(lambda: "shop: not sent, goes on trying" in said(shop), 30)
+        with broker(tmp_path, port):
+            c = mqtt.Client(mqtt.CallbackAPIVersion.VERSION2)
+            c.on_message = lambda *a: got.append(json.loads(a[2].payload))
+            c.on_connect = lambda *a: c.subscribe("shop/edm", 1)
+            rig.until(lambda: try_connect(c, port), 20)
+            c.loop_start()
+            rig.until(lambda: got, 60)
+            go_on(shop)
+            rig.until(lambda: len(got) > 1, 60)
+            c.loop_stop()
+    assert [m["kind"] for m in got] == ["stands", "done"]
+    assert hook.kinds() == ["stands"]
+    assert said(shop).count("shop: not sent") == 1
+
+
+def try_connect(c, port):
+    try:
+        return c.connect("127.0.0.1", port) == 0
+    except OSError:
+        return False
+
+
+def test_a_hook_that_fails_gets_it_later(shop, hook):
+    hook.broken = True
+    with notify(shop, f"[to.me]\nurl = {hook.url}"):
+        change(shop)
+        rig.until(lambda: "503" in said(shop), 30)
+        hook.broken = False
+        hook.until("stands", timeout=60)
+    assert "is there again" in said(shop)
+
+
+def test_a_command_works_without_apprise_and_paho(shop, tmp_path):
+    out = tmp_path / "called"
+    script = tmp_path / "call"
+    script.write_text('#!/bin/sh\necho "$EDM_KIND $EDM_TEXT" >> '
+                      f'{out}\ncat >> {out}.json\n')
+    script.chmod(0o755)
+    with notify(shop, f"[to.me]\nurl = command:{script}",
+                without=("apprise", "paho.mqtt.publish")) as config:
+        change(shop)
+        rig.until(lambda: out.exists() and "stands" in out.read_text(), 30)
+        for url, says in (("mqtt://x/y", "pip install paho-mqtt"),
+                          ("mailto://x:y@z", "pip install apprise")):
+            other = tmp_path / "other.ini"
+            other.write_text(config.read_text() + f"[to.b]\nurl = {url}\n")
+            r = subprocess.run(run(other, without=(
+                "apprise", "paho.mqtt.publish")), env=ENV, timeout=60,
+                capture_output=True, text=True)
+            assert r.returncode == 78 and says in r.stderr, r.stderr
+    json.loads(pathlib.Path(f"{out}.json").read_text())
+
+
+def test_apprise_sends_it(shop, hook):
+    pytest.importorskip("apprise")
+    url = hook.url.replace("http://", "json://")
+    with notify(shop, f"[to.me]\nurl = {url}") as config:
+        r = subprocess.run(run(config, "--try"), env=ENV, timeout=60,
+                           capture_output=True, text=True)
+        assert r.returncode == 0 and "me: sent" in r.stdout, r.stderr
+        change(shop)
+        rig.until(lambda: len(hook.got) > 1, 30)
+    test, stand = hook.got
+    assert "calls you" in test["message"]
+    assert "put electrode 3 in" in stand["message"]
+
+
+def test_who_does_not_answer_is_told(shop, hook):
+    with notify(shop, f"[to.me]\nurl = {hook.url}"):
+        shop.kill("edmd")
+        lost = hook.until("lost")
+        assert "edmd is" in lost[0]["text"]
+        # What it asked for before is not told again when it is back.
+        shop.start_edmd()
+        shop.client.status_where(lambda s: s.daemon == "ok", 20)
+
+
+@pytest.mark.parametrize("text, says", [
+    ("", "nobody to call"), ("[to.a]\n", "url"),
+    ("[to.a]\nurl = http://x/\nkinds = alarm", "some of fault"),
+    ("[to.a]\nurl = command:", "without a program"),
+    ("[to.a]\nurl = mqtt://x/shop/#", "a topic"),
+    ("quiet = 22-6-7\n[to.a]\nurl = http://x/", "two times of the day"),
+    ("quiet = 25:00-6\n[to.a]\nurl = http://x/", "two times of the day"),
+    ("repeat_min = often\n[to.a]\nurl = http://x/", "often"),
+    ("[to.a", "README.md"),
+])
+def test_a_file_that_is_wrong_is_refused(tmp_path, text, says):
+    config = tmp_path / "notify.ini"
+    config.write_text(f"[notify]\nstate = {tmp_path}\n{text}\n")
+    r = subprocess.run(run(config), env=ENV, timeout=60, capture_output=True,
+                       text=True)
+    assert r.returncode == 78 and says in r.stderr, r.stderr
