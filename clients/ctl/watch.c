@@ -63,7 +63,34 @@ static void print_generator(const struct talk_status *s)
 		printf("           its own fault: %s\n", s->generator_fault);
 }
 
-static void print_text(const struct talk_status *s)
+/* Of the systems that an operator has touched off, and of G54. */
+static void print_work(struct ctl *c, const struct talk_status *s)
+{
+	json_t *rows = NULL, *row;
+	size_t k;
+
+	if (ctl_ask_json(c, &(struct talk_question) { .verb = "offsets" },
+			 &rows))
+		return;
+	json_array_foreach(rows, k, row) {
+		if (k > 0 && !*ctl_text_of(row, "touched"))
+			continue;
+		printf("work       %s", ctl_text_of(row, "work"));
+		for (int i = 0; i < TALK_NAXES; i++) {
+			const char name[2] = { "XYZABCUV"[i], '\0' };
+			const double shift_mm = *name == 'Z' ?
+						s->electrode_shift_mm : 0;
+
+			if (strchr(s->axes, *name))
+				printf(" %s %.3f", name, s->pos_mm[i] -
+				       shift_mm - ctl_number_of(row, name));
+		}
+		putchar('\n');
+	}
+	json_decref(rows);
+}
+
+static void print_text(struct ctl *c, const struct talk_status *s)
 {
 	char took[32], left[64], why[96];
 
@@ -76,20 +103,24 @@ static void print_text(const struct talk_status *s)
 		printf("stands     %s, %s\n", s->stand, s->asks);
 	if (*s->job)
 		printf("job        %s, %s, %s\nline       %d of %d\n"
-		       "path       %.3f mm of %.3f mm\n"
+		       "path       %.3f mm of %.3f mm, %.3f to go\n"
 		       "depth      %.3f mm\n"
 		       "sums       jumps %d, retracts %d, shorts %d\n"
 		       "time       %s, %.1f %%, left %s%s\n", s->job,
 		       s->job_name, s->job_state, s->line, s->lines,
-		       s->place_mm, s->length_mm, s->depth_mm, s->jumps,
+		       s->place_mm, s->length_mm, s->length_mm - s->place_mm,
+		       s->depth_mm, s->jumps,
 		       s->retracts, s->shorts, took, s->progress * 100, left,
 		       why);
 	else
 		printf("job        none\n");
 	if (s->hunts > 0)
 		printf("warning    the gap servo hunts; edmctl alarms\n");
-	printf("gap        %.1f V\nfeed       %.3f mm/min\nposition  ",
-	       s->gap_v, s->feed_mm_s * 60);
+	printf("gap        %.1f V\nfeed       %.3f mm/min\n", s->gap_v,
+	       s->feed_mm_s * 60);
+	if (strcmp(s->daemon, "ok") == 0)
+		print_work(c, s);
+	printf("machine at");
 	for (int i = 0; i < TALK_NAXES; i++)
 		if (strchr(s->axes, "XYZABCUV"[i]))
 			printf(" %c %.3f", "XYZABCUV"[i], s->pos_mm[i]);
@@ -144,7 +175,7 @@ int ctl_status(struct ctl *c)
 	if (c->json)
 		print_json(s);
 	else
-		print_text(s);
+		print_text(c, s);
 	return strcmp(s->daemon, "ok") == 0 ? 0 : EX_UNAVAILABLE;
 }
 

@@ -317,6 +317,7 @@ static void take_status(struct service *a)
 		s->hunts = t->hunts;
 		s->lines = t->lines;
 		s->electrode = t->electrode;
+		s->shift_mm = t->electrode_shift_mm;
 		s->queue_len = t->queue_len;
 		take_time(s, t);
 	}

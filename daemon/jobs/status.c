@@ -134,8 +134,10 @@ static void fill_electrode(struct jobs_lcm_status *w, struct jobs *j)
 		w->electrode_wear_mm = e->worn[e->now].before_mm +
 				       electrode_used_mm(j);
 	else if (w->electrode &&
-		 store_electrode_find(j->store, w->electrode, &is) == 0)
+		 store_electrode_find(j->store, w->electrode, &is) == 0) {
 		w->electrode_wear_mm = is.wear_mm;
+		w->electrode_shift_mm = is.length_mm - is.wear_mm;
+	}
 }
 
 const char *jobs_axes(uint32_t axes, char to[INTERP_NAXES + 1])

@@ -2,6 +2,7 @@
 """Touching off on the panel, in a browser: the next job cuts at that zero."""
 
 import json
+import re
 
 import panel
 import pytest
@@ -32,14 +33,23 @@ def test_a_bore_becomes_the_zero_of_the_next_job(p, page):  # noqa: F811
     go(m, "G53 G0 Z10", "G0 X12 Y-8", "G53 G0 Z0")
     form(page, p, "Centre of a hole", Farthest_way_to_a_wall="15")
     page.get_by_role("radio", name="G55").click()
-    touched = page.locator(".touched")
+    touched = page.locator(".felt")
     expect(touched).to_contain_text("now")
+    # It lies in its form, and not over the stop.
+    assert page.locator(".probe .felt").bounding_box()["y"] > \
+        page.locator("#stop").bounding_box()["y"] + 40
     press(page.locator("#probe-run"))
     expect(touched.locator("tr", has_text="X")).to_contain_text("12.400")
     expect(touched.locator("tr", has_text="X")).to_contain_text("0.000")
     expect(touched.locator("tr", has_text="Y")).to_contain_text("\u22127.250")
     o = offsets(m)["G55"]
     assert o["touched"] == "XY"
+    # Work coordinates first, those of the machine beside them.
+    page.goto(p.url + "/#/cut")
+    page.locator(".workchoice").select_option("G55")
+    row = page.locator(".positions li").first
+    expect(row.locator(".n")).to_have_text(re.compile("^.?0.00[01]$"))
+    expect(row.locator(".mach")).to_contain_text("12.400")
     go(m, "G53 G0 Z10")
     at = first_cut(m, "G55")
     assert at[:2] == pytest.approx((12.4, -7.25), abs=1.5 * PULSE)
@@ -59,7 +69,7 @@ def test_a_probe_that_finds_nothing_says_so(p, page):  # noqa: F811
     press(page.locator("#probe-run"))
     expect(page.locator(".head h1")).to_contain_text("met nothing")
     m.client.ask("reset"), m.client.ask("stop")
-    expect(page.locator(".touched .warn")).to_contain_text("Nothing")
+    expect(page.locator(".felt .warn")).to_contain_text("Nothing")
     assert offsets(m) == before
 
 
@@ -72,8 +82,8 @@ def test_an_electrode_gets_its_length_here(p, page):  # noqa: F811
     assert m.ctl("electrode", "use", "7").returncode == 0
     go(m, "G53 G0 Z6", "G53 G0 X-10 Y0")
     form(page, p, "Electrode length", The_face_is_at="1,2")
-    expect(page.locator(".touched")).to_contain_text("T7")
+    expect(page.locator(".felt")).to_contain_text("T7")
     press(page.locator("#probe-run"))
-    expect(page.locator(".touched")).to_contain_text("2.000")
+    expect(page.locator(".felt")).to_contain_text("2.000")
     e, = json.loads(m.ctl("--json", "electrode", "list").stdout)
     assert e["length_mm"] == pytest.approx(2, abs=PULSE)

@@ -182,3 +182,17 @@ def test_what_was_and_what_is_now_is_told(machine):
     assert "Y was 0.0000, is 9000.0000, beyond the travel" in out
     code, out = said(machine.ctl("offset", "G54", "clear"))
     assert code == 0 and "X was 10.0000, is 0.0000" in out, out
+
+
+def test_where_it_stands_is_told_in_the_work_and_in_the_machine(machine):
+    m = machine
+    assert m.ctl("electrode", "add", "2", "length=4").returncode == 0
+    assert m.ctl("electrode", "use", "2").returncode == 0
+    go(m, "G53 G0 X10 Z9")
+    assert m.ctl("offset", "G56", "X@7.5", "Z@1").returncode == 0
+    m.client.hear(1.5)
+    out = m.ctl("status").stdout
+    assert "work       G54 X 10.000 Y 0.000 Z 5.000" in out, out
+    assert "work       G56 X 2.500 Y 0.000 Z 4.000" in out
+    assert "machine at X 10.000 Y 0.000 Z 9.000" in out
+    assert out.index("work  ") < out.index("machine at")

@@ -9,6 +9,7 @@ import { clock, duration, moment, number, parse, short } from "./format";
 import { link, type Point } from "./link";
 import { useLine } from "./lines";
 import { Card, Choice, Key, NumberField, PressKey, Sheet, act } from "./parts";
+import { WorkChoice, useWork } from "./offsets";
 import { PathView } from "./pathview";
 import { useAsk } from "./use";
 import { ValueSheet, ValuesSheet } from "./values";
@@ -69,10 +70,11 @@ function Feed(p: { onOpen: () => void }): JSX.Element {
 }
 
 function Positions(): JSX.Element {
-	const s = link.state, axes = link.hello?.axes ?? [];
-	return <Card class={`positions ${axes.length > 4 ? "many" : ""}`} label={t("cut.position")}><ul>
+	const s = link.state, axes = link.hello?.axes ?? [], { place } = useWork();
+	return <Card class={`positions ${axes.length > 4 ? "many" : ""}`} label={t("cut.position")}><div class="workhead"><WorkChoice /><span>{t("work.machine")}</span></div><ul>
 		{axes.map((a) => <li key={a.name}><b>{a.name}</b>
-			<span class="n">{number(s.pos[a.index] ?? 0, 3, true)}</span><u>{a.rotary ? "deg" : "mm"}</u>
+			<span class="n">{number(place(a), 3, true)}</span><u>{a.rotary ? "deg" : "mm"}</u>
+			<small class="mach" title={t("cut.machine")}>{number(s.pos[a.index] ?? 0, 3, true)}</small>
 			<em>{s.limit >> a.index & 1 ? t("setup.limit") : s.lost.includes(a.name) ? t("setup.lost") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : ""}</em></li>)}
 	</ul></Card>;
 }
@@ -184,7 +186,7 @@ export function Cut(): JSX.Element {
 	const s = link.state;
 	const shown = s.program > 0 && s.loaded;
 	const line = useLine(shown ? s.job : "", s.line);
-	const foot = shown ? <div class="progress"><p><code title={line}>{line}</code><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm</span></p>
+	const foot = shown ? <div class="progress"><p><code title={line}>{line}</code><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm{"\u2002"}{number(Math.max(0, s.length - s.far), 2)} {t("cut.togo")}</span></p>
 		<div class="bar"><i class="done" style={{ width: `${Math.min(100, s.progress * 100)}%` }} /></div></div> : null;
 	return <>
 		<div class="cut-grid">

@@ -7,7 +7,7 @@ import { whyNot } from "./can";
 import { number, parse } from "./format";
 import { link, type Axis } from "./link";
 import { Card, Choice, Key, NumberField, Sheet, act } from "./parts";
-import { useAsk } from "./use";
+import { change, useAsk, useSettings } from "./use";
 import { t } from "./words";
 
 /** Of each axis, where its origin is; `touched`: those not of the machine file. */
@@ -23,6 +23,22 @@ type Means = keyof typeof MEANS;
 function at(row: Row, axis: Axis): number {
 	const mm = row[axis.name];
 	return typeof mm === "number" ? mm : 0;
+}
+
+/** Where the machine stands in the work system that is shown: the programmed
+ * place, as the origin and the electrode have it. */
+export function useWork(): { work: string; place: (a: Axis) => number } {
+	const { work } = useSettings(), s = link.state;
+	const [rows] = useAsk<Row[]>("offsets", {}, LOOK_MS);
+	const row = rows?.find((r) => r.work === work);
+	return { work, place: (a) => (s.pos[a.index] ?? 0) - (row ? at(row, a) : 0) - (a.name === "Z" ? s.shift : 0) };
+}
+
+/** Which system that is. */
+export function WorkChoice(): JSX.Element {
+	const { work } = useSettings();
+	return <select class="workchoice" aria-label={t("work.system")} value={work} onChange={(e) => change({ work: e.currentTarget.value })}>
+		{[...WORKS, "G59.1", "G59.2", "G59.3"].map((w) => <option key={w} value={w}>{w}</option>)}</select>;
 }
 
 function OffsetSheet(p: { row: Row; axes: Axis[]; onClose: () => void }): JSX.Element {

@@ -7,7 +7,7 @@ import { whyNot } from "./can";
 import { ElectrodeCard } from "./electrodes";
 import { number, parse, short } from "./format";
 import { link, type Axis } from "./link";
-import { LOOK_MS, OffsetCard, WORKS, type Row as OffsetRow } from "./offsets";
+import { LOOK_MS, OffsetCard, WORKS, WorkChoice, useWork, type Row as OffsetRow } from "./offsets";
 import { Card, Choice, HoldKey, Key, NumberField, PressKey, act } from "./parts";
 import { beginPress } from "./press";
 import { PROBES, isWhole, type Probe, type ProbeId, type Values } from "./probes";
@@ -37,15 +37,15 @@ function AxisState(p: { axis: Axis }): JSX.Element {
 
 function JogCard(): JSX.Element {
 	const [step, set] = useState<string>("0.1"), [speed, setSpeed] = useState<Speed>("slow");
-	const axes = link.hello?.axes ?? [], held = step === "hold";
-	return <Card title={t("setup.jog")} class="jog" right={<Key class="small" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>}>
+	const axes = link.hello?.axes ?? [], held = step === "hold", { place } = useWork();
+	return <Card title={t("setup.jog")} class="jog" right={<><WorkChoice /><Key class="small" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key></>}>
 		<Choice label={t("setup.faster")} value={step} onChange={set} of={[...STEPS.map((v) => ({ value: v as string, text: short(Number(v)) })), { value: "hold", text: t("setup.held") }]} />
 		{held && <Choice label={t("setup.speed")} value={speed} onChange={setSpeed} of={(Object.keys(SPEEDS) as Speed[]).map((v) => ({ value: v, text: t(`speed.${v}`) }))} />}
 		<table class="axes"><tbody>{axes.map((a) => <tr key={a.name}><th scope="row">{a.name}</th>
 			<td><JogKey axis={a} way={-1} step={step} speed={speed} /></td>
-			<td class="n">{number(link.state.pos[a.index] ?? 0, 3, true)}<u>{a.rotary ? "deg" : "mm"}</u><AxisState axis={a} /></td>
+			<td class="n">{number(place(a), 3, true)}<u>{a.rotary ? "deg" : "mm"}</u><small class="mach">{t("work.machine")} {number(link.state.pos[a.index] ?? 0, 3, true)}</small><AxisState axis={a} /></td>
 			<td><JogKey axis={a} way={1} step={step} speed={speed} /></td></tr>)}</tbody></table>
-		<p class="note">{whyNot("jog") || t(held ? "setup.held.about" : "cut.machine")}</p>
+		<p class="note">{whyNot("jog") || (held ? t("setup.held.about") : "")}</p>
 	</Card>;
 }
 
@@ -124,7 +124,7 @@ function useFelt(felt: Felt | null, over: () => void): string {
 function Changes(p: { target: string; felt: Felt | null; state: string; now: Before }): JSX.Element {
 	const { felt, now } = p, done = felt && p.state === "done";
 	const mm = (x: number | undefined) => x === undefined ? "\u2013" : number(x, 3);
-	return <div class="touched" role="status"><table class="list"><thead><tr><th scope="col">{p.target}</th><th scope="col">{t(done ? "touch.was" : "touch.now")}</th>{done && <th scope="col">{t("touch.is")}</th>}</tr></thead>
+	return <div class="felt" role="status"><table class="list"><thead><tr><th scope="col">{p.target}</th><th scope="col">{t(done ? "touch.was" : "touch.now")}</th>{done && <th scope="col">{t("touch.is")}</th>}</tr></thead>
 		<tbody>{Object.keys(now).map((a) => <tr key={a}><th scope="row">{a}</th><td class="n">{mm(done ? felt.was[a] : now[a])} mm</td>{done && <td class="n"><b>{mm(now[a])}</b> mm</td>}</tr>)}</tbody></table>
 		{felt && p.state !== "done" && <p class={p.state ? "warn" : "note"}>{p.state ? t("touch.failed", { why: p.state }) : t("touch.feels")}</p>}</div>;
 }

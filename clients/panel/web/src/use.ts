@@ -84,12 +84,12 @@ export function usePages<T extends { job: string }>(what: string, more: Record<s
 		...(got.whole || pages >= PAGES_MAX ? {} : { next: () => want(pages + 1) }) };
 }
 
-export interface Settings { language: "en" | "zh-CN"; theme: "auto" | "light" | "dark" }
+export interface Settings { language: "en" | "zh-CN"; theme: "auto" | "light" | "dark"; work: string }
 
 function read(): Settings {
 	const fall: Settings = {
 		language: navigator.language.startsWith("zh") ? "zh-CN" : "en",
-		theme: "auto",
+		theme: "auto", work: "G54",
 	};
 	try { return { ...fall, ...JSON.parse(localStorage.getItem("edm-panel") ?? "{}") }; } catch { return fall; }
 }

@@ -143,6 +143,7 @@ export const en = {
 	"setup.offsetnote": "Where the origins are on the machine. * was touched off, the others are those of the machine file.",
 	"setup.faster": "Step size", "setup.held": "while pressed", "setup.speed": "Speed",
 	"setup.held.about": "Moves while the key is pressed, and stands when it is let go or the connection is lost.",
+	"work.system": "Work system that is shown", "work.machine": "machine",
 	"off.edit": "Work offset {work}", "off.means": "What the numbers mean", "off.now": "origin now at",
 	"off.here": "Here is", "off.here.about": "Where an axis stands becomes this number. The machine must be idle; an axis without a number stays.",
 	"off.origin": "Origin at", "off.origin.about": "The origin of an axis becomes this place of the machine. An axis without a number stays.",

@@ -123,6 +123,7 @@ export const zh: Record<Word, string> = {
 	"setup.offsetnote": "各原点在机床上的位置。* 为对刀所得，其余来自机床文件。",
 	"setup.faster": "步长",
 	"setup.held": "按住", "setup.speed": "速度", "setup.held.about": "按住时移动；松开或断线即停。",
+	"work.system": "显示的工件坐标系", "work.machine": "机床",
 	"off.edit": "工件偏置 {work}", "off.means": "数值的含义", "off.now": "当前原点",
 	"off.here": "此处为", "off.here.about": "轴当前所在处成为该数值。机床须空闲；未填的轴不变。",
 	"off.origin": "原点位于", "off.origin.about": "该轴的原点成为机床的这个位置。未填的轴不变。",
