@@ -11,7 +11,7 @@
 
 #define BEAT_MS		100		/* object 1017 begins with it */
 #define NTPDO		5
-#define FIRST		NTPDO		/* EdmdCondition */
+#define CONDITION	NTPDO		/* EdmdCondition */
 #define STATE_OPERATES	0x05
 #define STATE_READY	0x7f		/* pre-operational */
 #define STATE_STOPPED	0x04
@@ -158,13 +158,9 @@ void plc_period(struct plc *p)
 static struct can_msg tpdo(struct plc *p, int n)
 {
 	struct can_msg m = { .id = (uint16_t)(tpdo_id[n] + p->node),
-			     .len = n == FIRST ? 5 : 8 };
-	const uint8_t mcode = p->tell.mcode;
+			     .len = n == CONDITION ? 5 : 8 };
 
-	if (n == FIRST)
-		p->mcode = mcode;
 	if (n == 1) {
-		p->tell.mcode = p->mcode;
 		p->toggle = !p->toggle;
 		p->tell.flags = (uint8_t)((p->tell.flags & ~PLC_TOGGLE) |
 					  (p->toggle ? PLC_TOGGLE : 0));
@@ -176,7 +172,6 @@ static struct can_msg tpdo(struct plc *p, int n)
 			can_put(m.data + s->byte, plc_value(p, s),
 				(int)plc_bytes(s->type));
 	}
-	p->tell.mcode = mcode;
 	return m;
 }
 
@@ -210,12 +205,13 @@ static bool emergency_due(struct plc *p, struct can_msg *ret)
 	return !(p->emcy_id & PLC_EMCY_OFF);
 }
 
-/* One TPDO a period, so that the bus is not flooded at once. */
+/* One TPDO a period, so that the bus is not flooded at once.  But no M code is
+ * told before what EdmdCondition says of it: that goes with EdmdStatus. */
 static bool send_next(struct plc *p)
 {
 	if (p->send_in-- == 0) {
 		p->send_in = p->send_cycles - 1;
-		p->next = p->next == 0 ? FIRST : p->next;
+		p->next = p->next == 0 ? 1 : p->next;
 	}
 	if (!p->operational)
 		p->next = 0;
@@ -241,9 +237,10 @@ size_t plc_emit(struct plc *p, struct can_msg *ret)
 		ret[n++] = p->answer;
 	p->answers = false;
 	if (send_next(p)) {
+		if (p->next == 1)
+			ret[n++] = tpdo(p, CONDITION);
 		ret[n++] = tpdo(p, p->next);
-		p->next = p->next == FIRST ? 1 :
-			  p->next == FIRST - 1 ? 0 : (uint8_t)(p->next + 1);
+		p->next = p->next == CONDITION - 1 ? 0 : (uint8_t)(p->next + 1);
 	}
 	return n;
 }

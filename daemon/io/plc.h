@@ -113,9 +113,6 @@ struct plc {
 	struct can_msg answer;		/* of the SDO server, if ... */
 	bool answers;			/* ... this is set */
 	uint8_t next;			/* TPDO to send next; 0: none is due */
-	uint8_t mcode;			/* ... that EdmdStatus tells: never
-					 * before what EdmdCondition tells of
-					 * it */
 };
 
 /** plc_init() - nothing was heard yet, and permit is off. */
@@ -135,8 +132,8 @@ bool plc_receive(struct plc *p, const struct can_msg *m);
  */
 size_t plc_emit(struct plc *p, struct can_msg *ret);
 
-#define PLC_EMITS	4		/* heartbeat, emergency, SDO answer, one
-					 * TPDO */
+#define PLC_EMITS	5		/* heartbeat, emergency, SDO answer, two
+					 * TPDOs */
 
 /** plc_period() - once a period before the frames: time goes by. */
 void plc_period(struct plc *p);
