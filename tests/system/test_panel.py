@@ -334,7 +334,9 @@ def test_a_body_of_unknown_length_is_refused(p, me, length):
     head = "".join(f"{k}: {v}\r\n" for k, v in me.headers().items())
     got = p.raw(f"POST /api/check HTTP/1.1\r\nHost: 127.0.0.1:{p.port}\r\n"
                 f"{head}{length}\r\nG1 X1 F5\n".encode())
-    assert got.split(b" ")[1] in (b"411", b"413"), got[:200]
+    # Without an answer: what follows a length of 0 is no request, and a
+    # connection that is closed upon unread bytes may lose what was said.
+    assert not got or got.split(b" ")[1] in (b"411", b"413"), got[:200]
     assert got.count(b"HTTP/1.1") == 1
 
 

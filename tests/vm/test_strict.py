@@ -114,7 +114,7 @@ def test_nothing_starts_when_a_drive_is_switched_on_late(strict):
 FAULTS = [("mode", "drive", 3), ("ignores", "drive", 3),
           ("lags", "following", 3), ("limit", "drive", 14),
           ("jam", "following", 25)]
-TOLD = {"mode": "mode", "ignores": "bits", "lags": "bits", "limit": "bits",
+TOLD = {"mode": "mode", "ignores": "bits", "lags": "bits", "limit": "clip",
         "jam": "jam"}
 
 
@@ -159,6 +159,9 @@ def test_a_following_error_is_seen_before_it_is_as_wide_as_the_gap(faults):
 def test_a_warning_is_told_and_stops_nothing(faults):
     assert faults.d["out"]["warning"]["state"] in ("approach", "erode")
     assert "warns: statusword 12b7, bit 7" in faults.log
+    # A drive that goes along with its target is not clipped.
+    assert faults.d["out"]["at its limit"]["state"] in ("approach", "erode")
+    assert "bit 11: at an internal limit" in faults.log
     assert "drive X (node 1): emergency 3283" in faults.log
 
 

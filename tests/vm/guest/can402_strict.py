@@ -86,7 +86,7 @@ PLAN = [
     ("mode", ("mode", 1, 6), None),
     ("ignores", ("bits", 2, "0", "1000"), ("bits", 2, "0", "0")),
     ("lags", ("bits", 2, "2000", "0"), ("bits", 2, "0", "0")),
-    ("limit", ("bits", 1, "800", "0"), ("bits", 1, "0", "0")),
+    ("limit", ("clip", 1), ("free", 1)),
     ("jam", ("jam", 1), ("unjam", 1)),
 ]
 
@@ -104,6 +104,9 @@ def faults():
         s.tell("bits", 1, "80", "0")
         time.sleep(0.5)
         out["warning"] = {"state": s.status().get("state")}
+        s.tell("bits", 1, "800", "0")
+        time.sleep(0.5)
+        out["at its limit"] = {"state": s.status().get("state")}
         s.tell("bits", 1, "0", "0")
         out["off"] = power_cycle(s, "off", 2, 0.2)
 

@@ -130,6 +130,7 @@ HARMS = [
     ("bit 12", ["lie 2 clear 1000"], 1),
     ("bit 13", ["lie 1 set 2000"], 0.05),
     ("bit 11", ["lie 2 set 800"], 0.5),
+    ("bit 11, and it stands", ["jam 2 1", "lie 2 set 800"], 0.5),
     ("quick stop of one", ["quick 1"], 0),
     ("quick stop of both", ["quick 1", "quick 2"], 0),
     ("leaves", ["leave 2"], 0),

@@ -19,7 +19,8 @@ drives.py, no CANopen package.  TRAITS is JSON, node -> what is particular:
 
 COMMANDS is a FIFO, a line for each thing to do:
     off N | on N | push N INCREMENTS | mode N M | bits N SET CLEAR | emcy N CODE
-    warn N CODE, an emergency without a fault | jam N | unjam N | gap V | nmt BYTE BYTE | report FILE | quit
+    warn N CODE, an emergency without a fault | jam N | unjam N |
+    clip N, bit 11 and it stands | free N | gap V | nmt BYTE BYTE | report FILE | quit
 A report has a row for each SYNC: its time, the generator's flags, and of each
 drive its state, where the axis truly is, what the drive counts, and 6060.
 """
@@ -533,6 +534,9 @@ class Bus:
                                                  int(args[0], 16), 4))
         elif what in ("jam", "unjam"):
             d.jammed = what == "jam"
+        elif what in ("clip", "free"):
+            d.jammed = what == "clip"
+            d.force_set = 0x800 if d.jammed else 0
 
     def run(self):
         while True:

@@ -40,7 +40,8 @@ COMMAND = 0x05040001
 CSP = 8
 GENERATOR = 0x3f1
 WARNS = {"set": 0x80}
-SEEN_LATE = ({"set": 0x800}, {"mute": 1})
+AT_LIMIT = {"set": 0x800}
+SEEN_LATE = (AT_LIMIT, {"mute": 1})
 LEAP = 60_000       # increments in a period that no machine here may ask for
 
 
@@ -539,11 +540,13 @@ class Bus:
 
     def judge_sparks(self, on):
         """A loss may be seen with the second SYNC behind it; a heartbeat that
-        is missing after 0.25 s, and bit 11 may stand for 0.1 s."""
+        is missing after 0.25 s, and bit 11 may stand for 0.1 s.  A drive that
+        goes along with its target, with bit 11, is not clipped."""
         self.sparks = on
         ill = [d for d in self.drives
                if not (d.powered and d.follows() and d.known and
-                       d.lies in ({}, WARNS))]
+                       (d.lies in ({}, WARNS) or
+                        d.lies == AT_LIMIT and not d.jammed))]
         slowly = all(d.lies in SEEN_LATE for d in ill)
         self.bad_sparks = self.bad_sparks + 1 if on and ill else 0
         if self.bad_sparks == (30 if slowly else 5):
