@@ -127,17 +127,18 @@ static void fill_electrode(struct jobs_lcm_status *w, struct jobs *j)
 	struct store_electrode is;
 
 	w->electrode = electrode_held(j);
+	if (w->electrode &&
+	    store_electrode_find(j->store, w->electrode, &is) == 0) {
+		w->electrode_wear_mm = is.wear_mm;
+		w->electrode_shift_mm = is.length_mm - is.wear_mm;
+	}
+	/* A job has what it was loaded with. */
 	if (e->n && e->wear.nchanges)
 		w->electrode_shift_mm = e->worn[e->now < 0 ? 0 : e->now]
 						.offset_mm;
 	if (e->n && e->now >= 0)
 		w->electrode_wear_mm = e->worn[e->now].before_mm +
 				       electrode_used_mm(j);
-	else if (w->electrode &&
-		 store_electrode_find(j->store, w->electrode, &is) == 0) {
-		w->electrode_wear_mm = is.wear_mm;
-		w->electrode_shift_mm = is.length_mm - is.wear_mm;
-	}
 }
 
 const char *jobs_axes(uint32_t axes, char to[INTERP_NAXES + 1])
