@@ -186,6 +186,15 @@ def feed_with(plc, override):
     return plc.until(lambda s: abs(s["feed"] - want) < 0.1 * want)["feed"]
 
 
+def carry_out(plc, code):
+    """What was seen when the M code was told."""
+    seen = plc.until(lambda s: s["mcode"] == code)
+    plc.say(done=code)
+    plc.until(lambda s: s["mcode"] == 0)
+    plc.say(done=0)
+    return seen
+
+
 def cutting(plc):
     return plc.until(lambda s: s.get("spark") == 1)
 
@@ -226,11 +235,8 @@ def drive(plc, ret):
     ret["started"] = plc.until_state("travel")
     ret["feed"] = [feed_with(plc, o) for o in (100, 40, 100)]
 
-    for name, code in (("change", 6), ("mcode", 60)):
-        ret[name] = plc.until(lambda s: s["mcode"] == code)
-        plc.say(done=code)
-        plc.until(lambda s: s["mcode"] == 0)
-        plc.say(done=0)
+    ret["change"] = carry_out(plc, 6)
+    ret["mcode"] = carry_out(plc, 60)
     ret["cut"] = cutting(plc)
 
     plc.say(Hold=1)
@@ -269,10 +275,8 @@ def bad(plc, ret):
     """Noise of all kinds while a good PLC lets it cut."""
     plc.say(Permit=1)
     plc.press("Start")
-    plc.until(lambda s: s["mcode"] == 60)
-    plc.say(done=60)
-    plc.until(lambda s: s["mcode"] == 0)
-    plc.say(done=0)
+    carry_out(plc, 6)
+    carry_out(plc, 60)
     cutting(plc)
     off = can.Message(arbitration_id=0x200 + NODE, is_extended_id=False)
 
