@@ -48,8 +48,10 @@ def moved(ends):
     return ret
 
 
-def assert_same(path, tmp_path):
-    a, b = moved(ours(path, "linuxcnc")), moved(theirs(path, tmp_path))
+def assert_same(path, tmp_path, other=None):
+    """@other: the same program, in words of every version of LinuxCNC."""
+    a = moved(ours(path, "linuxcnc"))
+    b = moved(theirs(other or path, tmp_path))
     assert len(a) == len(b) and a, (len(a), len(b))
     for mine, other in zip(a, b):
         assert all(math.isclose(m, o, abs_tol=1.01e-3)
@@ -115,15 +117,27 @@ def test_a_whole_number_by_rule_is_whole(tmp_path):
 
 @peer
 def test_what_is_nearly_equal_is_equal_as_in_linuxcnc(tmp_path):
-    lines = ["G21 G90"]
+    """Since 2.9.4 GE and LE are true where EQ is; before, they were exact."""
+    def compare(word, a, b):
+        mine = other = f"[{a} {word} {b}]"
+        if word in ("GE", "LE"):
+            other = f"[[{a} EQ {b}] OR [{a} {word[0]}T {b}]]"
+        return f"G0 X[2 + {mine}]", f"G0 X[2 + {other}]"
+
+    lines = [], []
     for i, off in enumerate(("0", "0.00000001", "0.00001", "0.00009", "0.00011",
                              "0.001")):
         for word in ("EQ", "NE", "GT", "GE", "LT", "LE"):
-            lines.append(f"G0 X[2 + [3 {word} [3 + {off}]]] Y{i}")
-            lines.append(f"G0 X[2 + [[3 + {off}] {word} 3]] Y{i + 9}")
-    path = tmp_path / "e.ngc"
-    path.write_text("\n".join(lines) + "\nM2\n")
-    assert_same(path, tmp_path)
+            for y, of in ((i, ("3", f"[3 + {off}]")), (i + 9, (f"[3 + {off}]", "3"))):
+                for k, line in enumerate(compare(word, *of)):
+                    lines[k].append(f"{line} Y{y}")
+    mine, other = (written(tmp_path / f"{k}.ngc", lines[k]) for k in (0, 1))
+    assert_same(mine, tmp_path, other)
+
+
+def written(path, lines):
+    path.write_text("\n".join(["G21 G90", *lines]) + "\nM2\n")
+    return path
 
 
 class Words:

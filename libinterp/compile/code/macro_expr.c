@@ -118,9 +118,9 @@ static int apply(struct macro_line *l, const uint8_t *at, size_t i,
 	case EQ: *a = equal(fanuc, *a, b); break;
 	case NE: *a = !equal(fanuc, *a, b); break;
 	case GT: *a = x > y; break;
-	case GE: *a = x >= y; break;
+	case GE: *a = x >= y || equal(fanuc, *a, b); break;
 	case LT: *a = x < y; break;
-	case LE: *a = x <= y; break;
+	case LE: *a = x <= y || equal(fanuc, *a, b); break;
 	default: *a = logic(fanuc, op, x, y); break;
 	}
 	if (isfinite(*a))
