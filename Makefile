@@ -422,8 +422,8 @@ $(B)/panel.stamp: $(B)/web/node_modules.stamp $(WEB_SRC) $(B)/edm-panel
 		$(WEB)/*.mjs $(WEB)/tsconfig.json $(B)/web
 	$(Q)$(B)/edm-panel --print-words > $(B)/web/src/machine.json
 	$(Q)cd $(B)/web && npm run --silent check && \
-		EDM_PANEL_OUT='$(CURDIR)/$(B)/panel' npm run --silent build -- \
-			--logLevel warn && node finish.mjs '$(CURDIR)/$(B)/panel'
+		EDM_PANEL_OUT='$(abspath $(B))/panel' npm run --silent build -- \
+			--logLevel warn && node finish.mjs '$(abspath $(B))/panel'
 	@touch $@
 
 # -- The commands -------------------------------------------------------------
@@ -542,7 +542,7 @@ check-vm:
 units: $(UNIT_X) $(PEER_X) $(B)/loopback.so
 
 # Tests run in a network of their own; where there is none, by loopback.
-NETNS	= EDM_LOOPBACK='$(CURDIR)/$(B)' tests/netns
+NETNS	= EDM_LOOPBACK='$(abspath $(B))' tests/netns
 
 $(B)/loopback.so: tests/loopback.c
 	$(call say,CC,$<)
