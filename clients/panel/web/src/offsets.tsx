@@ -62,7 +62,7 @@ export function OffsetCard(): JSX.Element {
 	const [open, set] = useState("");
 	const axes = link.hello?.axes ?? [], row = rows?.find((r) => r.work === open);
 	return <Card title={t("setup.offsets")} class="offsets"><p class="note">{refused || t("setup.offsetnote")}</p>
-		<div class="scroll"><table class="list"><thead><tr><th />{axes.map((a) => <th scope="col" key={a.name}>{a.name}</th>)}</tr></thead>
+		<div class="scroll"><table class="list"><thead><tr><th />{axes.map((a) => <th scope="col" class="n" key={a.name}>{a.name}</th>)}</tr></thead>
 			<tbody>{rows?.map((r) => <tr key={r.work}><th scope="row"><Key class="small" label={t("off.edit", { work: r.work })} onPress={() => set(r.work)}>{r.work}</Key></th>
 				{axes.map((a) => <td class="n" key={a.name}>{number(at(r, a), 3, true)}{r.touched.includes(a.name) ? "*" : ""}</td>)}</tr>)}</tbody></table></div>
 		{row && <OffsetSheet row={row} axes={axes} onClose={() => { set(""); again(); }} />}

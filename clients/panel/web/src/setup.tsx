@@ -124,7 +124,7 @@ function useFelt(felt: Felt | null, over: () => void): string {
 function Changes(p: { target: string; felt: Felt | null; state: string; now: Before }): JSX.Element {
 	const { felt, now } = p, done = felt && p.state === "done";
 	const mm = (x: number | undefined) => x === undefined ? "\u2013" : number(x, 3);
-	return <div class="felt" role="status"><table class="list"><thead><tr><th scope="col">{p.target}</th><th scope="col">{t(done ? "touch.was" : "touch.now")}</th>{done && <th scope="col">{t("touch.is")}</th>}</tr></thead>
+	return <div class="felt" role="status"><table class="list"><thead><tr><th scope="col">{p.target}</th><th scope="col" class="n">{t(done ? "touch.was" : "touch.now")}</th>{done && <th scope="col" class="n">{t("touch.is")}</th>}</tr></thead>
 		<tbody>{Object.keys(now).map((a) => <tr key={a}><th scope="row">{a}</th><td class="n">{mm(done ? felt.was[a] : now[a])} mm</td>{done && <td class="n"><b>{mm(now[a])}</b> mm</td>}</tr>)}</tbody></table>
 		{felt && p.state !== "done" && <p class={p.state ? "warn" : "note"}>{p.state ? t("touch.failed", { why: p.state }) : t("touch.feels")}</p>}</div>;
 }
