@@ -489,9 +489,7 @@ VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd can402 torture)
 
 # A browser is driven in the tests' own process; LCM has one for itself.  They run
 # alone: a browser needs both cores at times.
-PANEL_TESTS = tests/system/test_panel.py tests/system/test_panel_login.py \
-	tests/system/test_panel_crowd.py \
-	tests/system/test_panel_page.py
+PANEL_TESTS = $(wildcard tests/system/test_panel*.py)
 
 # For somebody who changes code: most of what goes wrong, in 90 s.
 SLOW_UNITS = arcs cycle_random limits identify contouring taper \
