@@ -337,7 +337,7 @@ def test_a_body_of_unknown_length_is_refused(p, me, length):
     # Without an answer: what follows a length of 0 is no request, and a
     # connection that is closed upon unread bytes may lose what was said.
     assert not got or got.split(b" ")[1] in (b"411", b"413"), got[:200]
-    assert got.count(b"HTTP/1.1") == 1
+    assert got.count(b"HTTP/1.1") <= 1
 
 
 @pytest.mark.parametrize("path, body, behind", [

@@ -691,3 +691,12 @@ def test_every_page_says_at_its_top_that_no_command_gets_through(p, page):
     says_on_every_page(page, own)
     p.start_panel()
     expect(page.locator(".head .state p")).not_to_contain_text(own)
+
+
+def test_the_3d_part_is_fetched_again_where_it_was_lost(page):
+    page.route("**/scene-*.js", lambda r: r.abort())
+    page.reload()
+    expect(page.locator(".view")).to_contain_text("cannot be drawn")
+    page.unroute("**/scene-*.js")
+    expect(page.locator(".view")).not_to_contain_text("cannot be drawn")
+    assert page.evaluate("() => !!window.edmScene")

@@ -11,8 +11,8 @@
 #include <errno.h>
 #include <math.h>
 
-/* LinuxCNC's own TOLERANCE_EQUAL. */
-#define LINUXCNC_EQUAL	1e-4
+/* LinuxCNC's own TOLERANCE_EQUAL since 2.9.4; it was 1e-4. */
+#define LINUXCNC_EQUAL	1e-6
 
 /* From loose to tight; NOTHING ends an expression. */
 enum { NOTHING, LOGIC, RELATION, SUM, PRODUCT, POWER };

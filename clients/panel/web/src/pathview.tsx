@@ -19,6 +19,7 @@ export interface PathViewProps {
 	job?: string;			// whose text is shown for a line
 }
 
+const RETRY_MS = 2000;
 const BACK_MM = 0.0005;
 
 function scaleOf(mmPerPx: number): { mm: number; px: number } {
@@ -57,8 +58,7 @@ export function PathView(p: PathViewProps): JSX.Element {
 	useEffect(() => {
 		let live = true;
 		let watch: ResizeObserver | null = null;
-		// The 3D part is fetched when it is needed first.
-		void import("./scene").then(({ PathScene: Scene }) => {
+		const show = ({ PathScene: Scene }: typeof import("./scene")) => {
 			if (!live || !canvas.current || !box.current) return;
 			try {
 				const s = new Scene(canvas.current);
@@ -73,7 +73,15 @@ export function PathView(p: PathViewProps): JSX.Element {
 				setNote("");
 				setData((d) => { s.setPath(d); return d; });
 			} catch { setNote(t("view.nogl")); }
+		};
+		// The 3D part is fetched when it is needed first; again while there is
+		// no connection.
+		const load = (): void => void import("./scene").then(show, () => {
+			if (!live) return;
+			setNote(t("view.failed", { why: t("no.connection") }));
+			setTimeout(load, RETRY_MS);
 		});
+		load();
 		return () => { live = false; watch?.disconnect(); scene.current?.dispose(); scene.current = null; };
 	}, []);
 
