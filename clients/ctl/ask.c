@@ -260,13 +260,27 @@ static void print_names(const char *job, const char *name, struct wide w)
 	       w.name + 1 - characters(name), "");
 }
 
+/* "-": nobody has looked yet; "?": that cannot be told. */
+static void forecast_text(char *to, size_t size, json_t *job)
+{
+	const double s = ctl_number_of(job, "forecast_s");
+
+	if (!json_is_number(json_object_get(job, "forecast_s")))
+		snprintf(to, size, "-");
+	else if (s < 0)
+		snprintf(to, size, "?");
+	else
+		ctl_duration(to, size, s);
+}
+
 static void print_queued(json_t *job)
 {
-	char at[32];
+	char at[32], takes[32];
 
 	ctl_when(at, job, "submitted_us");
-	printf("%-8s %9.0f  %s%s\n", ctl_text_of(job, "state"),
-	       ctl_number_of(job, "lines"), at,
+	forecast_text(takes, sizeof(takes), job);
+	printf("%-8s %9.0f  %s  %16s%s\n", ctl_text_of(job, "state"),
+	       ctl_number_of(job, "lines"), at, takes,
 	       json_is_true(json_object_get(job, "hold")) ?
 	       "  waits for start" : "");
 }
@@ -558,6 +572,24 @@ static void list_leave(void *taken)
 	(void)taken;
 }
 
+/* What all of it will take, and when that would be over. */
+static void print_total(struct ctl *c)
+{
+	const struct talk_status *t = ctl_first_status(c);
+	const time_t end = t ? (time_t)t->queue_end_s : 0;
+	char text[32], at[32] = "";
+	struct tm tm;
+
+	if (!t || !(t->queue_s > 0))
+		return;
+	ctl_duration(text, sizeof(text), t->queue_s + fmax(0, t->eta_s));
+	if (localtime_r(&end, &tm))
+		strftime(at, sizeof(at), "%d %b %H:%M", &tm);
+	printf("all of it takes %s; if nothing is held, it ends %s", text, at);
+	printf(t->queue_untold > 0 ? "; of %d more that is not known\n" : "\n",
+	       t->queue_untold);
+}
+
 static int list(struct ctl *c, const char *verb, const char *head,
 		void (*print)(json_t *job))
 {
@@ -578,7 +610,12 @@ static int list(struct ctl *c, const char *verb, const char *head,
 
 int ctl_queue(struct ctl *c)
 {
-	return list(c, "queue", "STATE        LINES  SUBMITTED", print_queued);
+	const int err = list(c, "queue", "STATE        LINES  SUBMITTED     "
+			     "               TAKES", print_queued);
+
+	if (err == 0 && !c->json)
+		print_total(c);
+	return err;
 }
 
 int ctl_ended(struct ctl *c)

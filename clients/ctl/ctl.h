@@ -161,11 +161,15 @@ void ctl_left(char *to, size_t size, const struct talk_status *s);
 /** ctl_left_why() - when that is, and what it is known by. */
 void ctl_left_why(char *to, size_t size, const struct talk_status *s);
 
-/** ctl_left() - "2 min 03 s"; before the job has cut, "1 min 02 s to 4 min 06
- *  s"; "?". */
-void ctl_left(char *to, size_t size, const struct talk_status *s);
-/** ctl_left_why() - when that is, and what it is known by. */
-void ctl_left_why(char *to, size_t size, const struct talk_status *s);
+/** ctl_deep_word() - "depth", or "wire" of a machine that has one. */
+const char *ctl_deep_word(const struct talk_status *s);
+/** ctl_deep() - the depth of the cut, or how the wire leans. */
+void ctl_deep(char *to, size_t size, const struct talk_status *s);
+/** ctl_speed() - @feed_mm_min; also by area, if the height is known. */
+void ctl_speed(char *to, size_t size, const struct talk_status *s,
+	       double feed_mm_min);
+/** ctl_sums() - jumps, where there are any, retracts, shorts. */
+void ctl_sums(char *to, size_t size, const struct talk_status *s);
 
 /* -- line.c: progress in one line ----------------------------------------- */
 

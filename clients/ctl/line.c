@@ -141,10 +141,48 @@ void line_feed(struct mean *m, double now_s, const struct talk_status *s)
 		mean_add(m, now_s, s->feed_mm_s * 60);
 }
 
+static bool is_wire(const struct talk_status *s)
+{
+	return strcmp(s->process, "wire") == 0;
+}
+
+const char *ctl_deep_word(const struct talk_status *s)
+{
+	return is_wire(s) ? "wire" : "depth";
+}
+
+void ctl_deep(char *to, size_t size, const struct talk_status *s)
+{
+	if (is_wire(s))
+		snprintf(to, size, "leans %.2f deg", s->lean_deg);
+	else
+		snprintf(to, size, "%.3f mm, deepest %.3f mm", s->depth_mm,
+			 s->depth_far_mm);
+}
+
+void ctl_speed(char *to, size_t size, const struct talk_status *s,
+	       double feed_mm_min)
+{
+	int n = snprintf(to, size, "%.2f mm/min", feed_mm_min);
+
+	if (s->height_mm > 0)
+		snprintf(to + n, size - (size_t)n, ", %.1f mm2/min",
+			 feed_mm_min * s->height_mm);
+}
+
+void ctl_sums(char *to, size_t size, const struct talk_status *s)
+{
+	int n = is_wire(s) ? 0 : snprintf(to, size, "jumps %d, ", s->jumps);
+
+	snprintf(to + n, size - (size_t)n, "retracts %d, shorts %d",
+		 s->retracts, s->shorts);
+}
+
 static void describe(char *to, size_t size, const struct talk_status *s,
 		     double feed_mm_min)
 {
-	char left[64], b[BAR_CHARS + 3], rest[LINE_MAX_CHARS - BAR_CHARS - 3];
+	char left[64], deep[64], sums[64], speed[64];
+	char b[BAR_CHARS + 3], rest[LINE_MAX_CHARS - BAR_CHARS - 3];
 
 	if (strcmp(s->daemon, "ok") != 0) {
 		snprintf(to, size, "edmd is %s; job %s, %s, was at %.3f mm",
@@ -163,10 +201,12 @@ static void describe(char *to, size_t size, const struct talk_status *s,
 		return;
 	}
 	ctl_left(left, sizeof(left), s);
-	snprintf(rest, sizeof(rest), "%5.1f %% %-8s left %s, depth %.3f mm, "
-		 "gap %.0f V, jumps %d, retracts %d, feed %.2f mm/min",
-		 s->progress * 100, s->state, left, s->depth_mm, s->gap_v,
-		 s->jumps, s->retracts, feed_mm_min);
+	ctl_deep(deep, sizeof(deep), s);
+	ctl_sums(sums, sizeof(sums), s);
+	ctl_speed(speed, sizeof(speed), s, feed_mm_min);
+	snprintf(rest, sizeof(rest), "%5.1f %% %-8s left %s, %s %s, gap %.0f "
+		 "V, %s, feed %s", s->progress * 100, s->state, left,
+		 ctl_deep_word(s), deep, s->gap_v, sums, speed);
 	bar(b, s->progress, columns() - 3 - (int)strlen(rest));
 	snprintf(to, size, "%s %s", b, rest);
 }

@@ -167,7 +167,7 @@ static void draw_bar(int y, double done)
 
 static int draw_job(int y, const struct talk_status *t)
 {
-	char left[64], took[32], why[96];
+	char left[64], took[32], why[96], deep[64], sums[64];
 
 	if (!*t->job) {
 		say(y, 0, A_NORMAL, "no job is loaded, %d wait", t->queue_len);
@@ -175,16 +175,17 @@ static int draw_job(int y, const struct talk_status *t)
 	}
 	ctl_left(left, sizeof(left), t);
 	ctl_left_why(why, sizeof(why), t);
+	ctl_deep(deep, sizeof(deep), t);
+	ctl_sums(sums, sizeof(sums), t);
 	ctl_duration(took, sizeof(took), t->job_s);
 	put_within(y, 0, NAME_EDGE - 1, A_BOLD, t->job_name);
 	say(y, NAME_EDGE, A_NORMAL, "%-8s line %d of %d   %d wait",
 	    t->job_state, t->line, t->lines, t->queue_len);
 	draw_bar(y + 1, t->progress);
 	say(y + 2, 0, A_NORMAL, "time %s, left %s%s", took, left, why);
-	say(y + 3, 0, A_NORMAL, "place %.3f of %.3f mm, depth %.3f mm",
-	    t->place_mm, t->length_mm, t->depth_mm);
-	say(y + 4, 0, A_NORMAL, "jumps %d, retracts %d, shorts %d", t->jumps,
-	    t->retracts, t->shorts);
+	say(y + 3, 0, A_NORMAL, "place %.3f of %.3f mm, %s %s", t->place_mm,
+	    t->length_mm, ctl_deep_word(t), deep);
+	say(y + 4, 0, A_NORMAL, "%s", sums);
 	return y + 5;
 }
 

@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
+#include <unistd.h>
 
 #define SHOW_CHUNKS	64		/* a smaller job is sent before progress
 					 * could be seen */
@@ -136,6 +137,33 @@ static int print_outcome(const struct ctl *c, const struct submission *j)
 	return 0;
 }
 
+/* How long it will take is told when it was run in virtual time. */
+struct awaited {
+	const char *id;
+	char text[256];
+};
+
+static void on_event(void *arg, const struct talk_event *e)
+{
+	struct awaited *a = arg;
+
+	if (strcmp(e->kind, "forecast") == 0 && strcmp(e->job, a->id) == 0)
+		plain_copy(a->text, sizeof(a->text), e->text);
+}
+
+/* A program that sends jobs does not wait for that. */
+static void print_forecast(const struct ctl *c, const struct awaited *a)
+{
+	const double until_s = talk_now_s() + c->timeout_s;
+
+	if (c->json || c->wait || !isatty(STDOUT_FILENO))
+		return;
+	while (!*a->text && talk_now_s() < until_s && !talk_interrupted())
+		talk_wait(c->talk, 50);
+	puts(*a->text ? a->text : "how long it takes is not known yet; edmctl "
+				  "queue tells it later");
+}
+
 static const char *name_of(const struct ctl *c)
 {
 	const char *slash = strrchr(c->arg, '/');
@@ -155,6 +183,7 @@ static int send_text(struct ctl *c, const struct text *t,
 		.silent_s = c->timeout_s,
 	};
 	struct submission *j;
+	struct awaited a;
 	int err, rc;
 
 	if (!c->talk)
@@ -165,8 +194,13 @@ static int send_text(struct ctl *c, const struct text *t,
 		fprintf(stderr, "edmctl: %s: %s\n", c->arg, strerror(-err));
 		return EX_SOFTWARE;
 	}
+	a = (struct awaited) { .id = submission_id(j) };
+	talk_on_event(c->talk, on_event, &a);
 	err = job_run(c, j);
 	rc = err < 0 ? ctl_unanswered(c, err) : print_outcome(c, j);
+	if (rc == 0)
+		print_forecast(c, &a);
+	talk_on_event(c->talk, NULL, NULL);
 	snprintf(id, TALK_WORD_MAX, "%s", submission_id(j));
 	submission_end(j);
 	return rc;

@@ -92,11 +92,14 @@ static void print_work(struct ctl *c, const struct talk_status *s)
 
 static void print_text(struct ctl *c, const struct talk_status *s)
 {
-	char took[32], left[64], why[96];
+	char took[32], left[64], why[96], deep[64], sums[64], speed[64];
 
 	ctl_duration(took, sizeof(took), s->job_s);
 	ctl_left(left, sizeof(left), s);
 	ctl_left_why(why, sizeof(why), s);
+	ctl_deep(deep, sizeof(deep), s);
+	ctl_sums(sums, sizeof(sums), s);
+	ctl_speed(speed, sizeof(speed), s, s->feed_mm_s * 60);
 	printf("machine    %s\nedmd       %s\nstate      %s\nfault      %s\n",
 	       s->machine, s->daemon, s->state, s->fault);
 	if (*s->asks)
@@ -104,20 +107,18 @@ static void print_text(struct ctl *c, const struct talk_status *s)
 	if (*s->job)
 		printf("job        %s, %s, %s\nline       %d of %d\n"
 		       "path       %.3f mm of %.3f mm, %.3f to go\n"
-		       "depth      %.3f mm\n"
-		       "sums       jumps %d, retracts %d, shorts %d\n"
+		       "%-10s %s\n"
+		       "sums       %s\n"
 		       "time       %s, %.1f %%, left %s%s\n", s->job,
 		       s->job_name, s->job_state, s->line, s->lines,
 		       s->place_mm, s->length_mm, s->length_mm - s->place_mm,
-		       s->depth_mm, s->jumps,
-		       s->retracts, s->shorts, took, s->progress * 100, left,
-		       why);
+		       ctl_deep_word(s), deep, sums, took, s->progress * 100,
+		       left, why);
 	else
 		printf("job        none\n");
 	if (s->hunts > 0)
 		printf("warning    the gap servo hunts; edmctl alarms\n");
-	printf("gap        %.1f V\nfeed       %.3f mm/min\n", s->gap_v,
-	       s->feed_mm_s * 60);
+	printf("gap        %.1f V\nfeed       %s\n", s->gap_v, speed);
 	if (strcmp(s->daemon, "ok") == 0)
 		print_work(c, s);
 	printf("machine at");

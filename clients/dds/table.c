@@ -173,6 +173,7 @@ static void json_numbers(json_t *o, const edm_MachineState *m)
 	} number[] = {
 		{ "progress", m->progress }, { "place_mm", m->place_mm },
 		{ "length_mm", m->length_mm }, { "depth_mm", m->depth_mm },
+		{ "depth_far_mm", m->depth_far_mm },
 		{ "feed_mm_s", m->feed_mm_s }, { "gap_v", m->gap_v },
 		{ "wake_late_max_us", m->wake_late_max_us },
 		PROCESS_TELLS(TOLD_ROW)

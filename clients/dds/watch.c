@@ -99,6 +99,7 @@ static void fill_place(const struct shm_snapshot *s, edm_MachineState *m)
 	m->place_mm = s->place_mm;
 	m->length_mm = s->length_mm;
 	m->depth_mm = s->depth_mm;
+	m->depth_far_mm = s->depth_far_mm;
 	m->feed_mm_s = s->feed_mm_s;
 	m->gap_v = s->gap_v;
 	for (int i = 0; i < SHM_NAXES; i++)

@@ -203,6 +203,7 @@ static void fill_places(const struct live *l, json_t *to)
 	json_object_set_new(to, "far", number(s->far_mm, 1e-5));
 	json_object_set_new(to, "length", number(s->length_mm, 1e-5));
 	json_object_set_new(to, "depth", number(s->depth_mm, 1e-5));
+	json_object_set_new(to, "depthFar", number(s->depth_far_mm, 1e-5));
 	json_object_set_new(to, "line", json_integer(s->line));
 	json_object_set_new(to, "seg", json_integer(s->seg));
 	json_object_set_new(to, "program", json_integer(s->program));

@@ -318,6 +318,7 @@ static void take_status(struct service *a)
 		s->lines = t->lines;
 		s->electrode = t->electrode;
 		s->shift_mm = t->electrode_shift_mm;
+		s->lean_deg = t->lean_deg;
 		s->queue_len = t->queue_len;
 		take_time(s, t);
 	}

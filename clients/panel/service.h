@@ -36,6 +36,7 @@ struct service_status {
 	int lines, queue_len, hunts;
 	int electrode;			/* in the holder; 0: none */
 	double shift_mm;		/* of Z, by it */
+	double lean_deg;		/* of a wire */
 	double eta_s;			/* -1: there is no estimate */
 	double eta_min_s, eta_max_s, eta_factor, end_s, progress;
 	char eta_by[SERVICE_WORD_MAX], eta_condition[SERVICE_WORD_MAX];

@@ -237,6 +237,8 @@ static json_t *state_of(struct panel *p)
 	json_object_set_new(o, "lines", json_integer(s->lines));
 	json_object_set_new(o, "electrode", json_integer(s->electrode));
 	json_object_set_new(o, "shift", json_real(s->shift_mm));
+	json_object_set_new(o, "lean",
+			    json_real(round(s->lean_deg * 100) / 100));
 	json_object_set_new(o, "queue", json_integer(s->queue_len));
 	add_time(o, s);
 	return o;

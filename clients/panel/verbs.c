@@ -487,11 +487,12 @@ json_t *verbs_hello(struct panel *p, const struct session *s)
 	for (int i = 0; i < INTERP_NAXES; i++)
 		if (c->axes.present >> i & 1)
 			json_array_append_new(axes, axis(c, i));
-	return json_pack("{s:s,s:s,s:s,s:s,s:o,s:o,s:i,s:b,s:b,s:s}",
+	return json_pack("{s:s,s:s,s:s,s:s,s:o,s:o,s:i,s:f,s:b,s:b,s:s}",
 			 "machine", c->name, "user", s->user, "role",
 			 role_name(s->role), "version", EDM_VERSION, "axes",
 			 axes, "fields", values_fields(), "process",
-			 c->gap.process, "plc", config_has_plc(c), "simulated",
+			 c->gap.process, "height", config_wire_height_mm(c),
+			 "plc", config_has_plc(c), "simulated",
 			 config_machine_is(c, MACHINE_NO_WIRES), "table",
 			 c->tech_table);
 }

@@ -522,6 +522,18 @@ void config_print(const struct machine_config *c, FILE *f);
 /** config_document() - docs/config.md. */
 void config_document(FILE *f);
 
+/** config_process_name() - "sink" or "wire". */
+const char *config_process_name(const struct machine_config *c);
+
+/** config_wire_height_mm() - of the work along the wire; 0: not known, or there
+ *  is no wire. */
+double config_wire_height_mm(const struct machine_config *c);
+
+/** config_wire_lean_deg() - how far the wire leans from upright where the axes
+ *  are at @pos_mm; 0 without guides. */
+double config_wire_lean_deg(const struct machine_config *c,
+			    const double pos_mm[INTERP_NAXES]);
+
 /** config_has_plc() - is there a PLC? */
 bool config_has_plc(const struct machine_config *c);
 

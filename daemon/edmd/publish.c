@@ -181,7 +181,7 @@ static void notice_ended(const struct loop *l)
 		.program = s.program, .outcome = s.outcome,
 		.time_ns = s.time_ns, .period_ns = s.period_ns,
 		.place_mm = s.place_mm, .far_mm = s.far_mm,
-		.length_mm = s.length_mm, .depth_mm = s.depth_mm,
+		.length_mm = s.length_mm, .depth_mm = s.depth_far_mm,
 		.job_cycles = s.job_cycles, .jumps = s.jumps,
 		.retracts = s.retracts, .shorts = s.shorts,
 		.arcs = s.arcs, .erode_cycles = s.erode_cycles,
@@ -228,17 +228,21 @@ void loop_notice(struct loop *l)
 static void snapshot_place(const struct cycle *c, struct shm_snapshot *s)
 {
 	const struct interp_cursor *at = &c->cursor;
-	const struct interp_program_head *h = at->p.head;
+	const struct depth *d = &c->depth;
 
 	s->seg = at->index;
 	s->tick = at->tick;
 	s->line = at->seg.line;
 	s->place_mm = interp_cursor_place_mm(at);
 	s->far_mm = c->far_mm;
-	s->length_mm = h->length_mm;
-	s->depth_mm = ((double)h->start_pulses[INTERP_Z] +
-		       h->probed.shift[INTERP_Z] - s->pos[INTERP_Z]) *
-		      s->pulse_mm[INTERP_Z];
+	s->length_mm = at->p.head->length_mm;
+	s->depth_mm = d->now_mm;
+	s->depth_far_mm = d->cut.far_mm;
+	s->depth_known_mm = d->cut.known_mm;
+	s->depth_counts = d->cut.counts;
+	s->depth_met = d->met;
+	memcpy(s->depth_from, d->cut.from, sizeof(s->depth_from));
+	memcpy(s->depth_way, d->cut.way, sizeof(s->depth_way));
 }
 
 static void snapshot_probe(const struct cycle *c, struct shm_snapshot *s)

@@ -128,6 +128,12 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 		.back_mm = s->back_mm, .sure_mm = s->sure_mm,
 		.moved_beside = s->moved_beside,
 		.found_once = s->found_once, .found_twice = s->found_twice,
+		.depth = {
+			.cut.far_mm = s->depth_far_mm,
+			.cut.known_mm = s->depth_known_mm,
+			.cut.counts = s->depth_counts,
+			.now_mm = s->depth_mm, .met = s->depth_met,
+		},
 		.pump = s->pump, .mcode = s->mcode, .mcode_at = s->mcode_at,
 		.stand = {
 			.why = s->kept_stand < STAND_NREASONS ?
@@ -146,6 +152,8 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 		},
 	};
 
+	memcpy(past.depth.cut.from, s->depth_from, sizeof(s->depth_from));
+	memcpy(past.depth.cut.way, s->depth_way, sizeof(s->depth_way));
 	memcpy(past.moved_mm, s->moved_mm, sizeof(past.moved_mm));
 	memcpy(past.pos, s->pos, sizeof(past.pos));
 	memcpy(past.shift, s->shift, sizeof(past.shift));

@@ -323,6 +323,17 @@ static struct interp_probed probed_by(const struct shm_snapshot *s)
 	return p;
 }
 
+static struct interp_depth depth_by(const struct shm_snapshot *s)
+{
+	struct interp_depth d = {
+		.far_mm = s->depth_far_mm, .counts = s->depth_counts,
+	};
+
+	memcpy(d.way, s->depth_way, sizeof(d.way));
+	memcpy(d.from, s->depth_from, sizeof(d.from));
+	return d;
+}
+
 int again_check(struct jobs *j, const struct store_job *job)
 {
 	static struct again a;
@@ -353,6 +364,7 @@ int again_request(struct jobs *j, const struct store_job *job,
 	ret->sets = a.base.sets;
 	ret->from.far_mm = a.base.snap.far_mm;
 	ret->from.probed = probed_by(&a.base.snap);
+	ret->from.depth = depth_by(&a.base.snap);
 	ret->from.probed_known = true;
 	ret->from.unanswered = a.base.snap.mcode;
 	for (int i = 0; i < INTERP_NAXES; i++)

@@ -67,7 +67,7 @@ struct checkpoint_base {
 struct checkpoint_place {
 	int64_t utime;
 	uint32_t state, seg, tick, line;
-	double place_mm, far_mm, back_mm, depth_mm;
+	double place_mm, far_mm, back_mm, depth_mm, depth_far_mm;
 	int32_t pos[SHM_NAXES], drive[SHM_NAXES], shift[SHM_NAXES];
 	int8_t toward[SHM_NAXES];
 	uint64_t job_cycles, erode_cycles, jump_cycles;

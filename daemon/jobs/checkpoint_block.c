@@ -87,7 +87,8 @@ struct checkpoint_place checkpoint_place_of(const struct checkpoint_base *b)
 		.utime = b->utime, .state = s->state, .seg = s->seg,
 		.tick = s->tick, .line = s->line, .place_mm = s->place_mm,
 		.far_mm = s->far_mm, .back_mm = s->back_mm,
-		.depth_mm = s->depth_mm, .job_cycles = s->job_cycles,
+		.depth_mm = s->depth_mm, .depth_far_mm = s->depth_far_mm,
+		.job_cycles = s->job_cycles,
 		.erode_cycles = s->erode_cycles, .jump_cycles = s->jump_cycles,
 		.retracts = s->retracts, .jumps = s->jumps,
 		.shorts = s->shorts, .arcs = s->arcs,
@@ -117,6 +118,7 @@ static void put_place(struct checkpoint_base *b,
 	s->far_mm = p->far_mm;
 	s->back_mm = p->back_mm;
 	s->depth_mm = p->depth_mm;
+	s->depth_far_mm = p->depth_far_mm;
 	s->job_cycles = p->job_cycles;
 	s->erode_cycles = p->erode_cycles;
 	s->jump_cycles = p->jump_cycles;

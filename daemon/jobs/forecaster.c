@@ -3,6 +3,7 @@
 #include "forecaster.h"
 
 #include "jobs.h"
+#include "compiler.h"
 #include "jobs_log.h"
 #include "store_learnt.h"
 #include "compiling.h"
@@ -26,7 +27,9 @@ struct forecasting {
 	struct jobs *jobs;
 	const struct machine_config *config;
 	char machine[SHM_NAME_MAX];
-	uint32_t n;
+	uint32_t n;			/* of the job */
+	char id[64], name[64];
+	int block;			/* its program; -1: program.<n> */
 	int err;
 	struct forecast forecast;
 	char electrode[64], work[64];
@@ -52,7 +55,9 @@ static int forecaster_work(struct forecasting *f)
 	struct interp_program p;
 	const void *block;
 	size_t bytes;
-	int err = shm_program_read(&block, &bytes, f->machine, f->n);
+	int err = f->block >= 0 ?
+		  shm_program_map(&block, &bytes, f->block) :
+		  shm_program_read(&block, &bytes, f->machine, f->n);
 
 	if (err < 0)
 		return err;
@@ -86,8 +91,18 @@ static void forecasting_free(struct forecasting *f)
 	sd_event_source_unref(f->source);
 	if (f->fd >= 0)
 		close(f->fd);
+	if (f->block >= 0)
+		close(f->block);
 	forecast_free(&f->forecast);
 	free(f);
+}
+
+static double learnt_factor(struct jobs *j, const char *condition,
+			    const char *electrode, const char *work)
+{
+	return store_learnt_factor(j->store, &(struct store_learnt) {
+		condition, electrode, work,
+	});
 }
 
 static void take_learnt(struct jobs *j)
@@ -96,42 +111,68 @@ static void take_learnt(struct jobs *j)
 
 	for (uint32_t i = 0; l->cond && i < l->forecast.nconds; i++)
 		if (l->cond[i].all_s > 0)
-			eta_learnt(l, i, store_learnt_factor(j->store,
-				&(struct store_learnt) {
-					l->forecast.cond[i],
-					j->forecaster.electrode,
-					j->forecaster.work,
-				}));
+			eta_learnt(l, i, learnt_factor(j, l->forecast.cond[i],
+						       j->forecaster.electrode,
+						       j->forecaster.work));
 }
 
 /* The one in the holder is known better than what a table was made for. */
-static void take_materials(struct jobs *j, const struct forecasting *f)
+static void correct_materials(struct jobs *j, struct forecasting *f)
 {
 	const uint32_t held = electrode_held(j);
-	struct forecaster *to = &j->forecaster;
 	struct store_electrode e;
 
-	memcpy(to->electrode, f->electrode, sizeof(to->electrode));
-	memcpy(to->work, f->work, sizeof(to->work));
 	if (held && store_electrode_find(j->store, held, &e) == 0 &&
 	    *e.material)
-		snprintf(to->electrode, sizeof(to->electrode), "%s",
-			 e.material);
+		snprintf(f->electrode, sizeof(f->electrode), "%s", e.material);
+}
+
+/* What it will take; -1: that cannot be told. */
+static double whole_s(struct jobs *j, const struct forecasting *f)
+{
+	const struct forecast *of = &f->forecast;
+	double s = of->other_s;
+
+	if (f->err < 0 || !of->nparts)
+		return -1;
+	for (uint32_t i = 0; i < of->nparts; i++) {
+		const struct forecast_part *p = &of->part[i];
+		const double factor = p->cut_s > 0 ?
+			learnt_factor(j, of->cond[p->cond], f->electrode,
+				      f->work) : 0;
+
+		s += p->cut_s * (factor > 0 ? factor : 1);
+	}
+	return s;
+}
+
+static void tell(struct jobs *j, const struct forecasting *f, double s)
+{
+	const struct jobs_note n = { .kind = "forecast", .job = f->id };
+	const int min = (int)(s / 60);
+
+	store_set_forecast(j->store, f->n, s);
+	queue_recount(j);
+	if (s < 0)
+		jobs_note(j, &n, "job %s: how long it takes cannot be told: %s",
+			  f->name, f->forecast.why_not ? f->forecast.why_not :
+			  strerror(-f->err));
+	else
+		jobs_note(j, &n, "job %s takes %d h %02d min %02d s, by "
+			  "forecast", f->name, min / 60, min % 60,
+			  (int)s % 60);
 }
 
 static void take(struct jobs *j, struct forecasting *f)
 {
-	if (f->forecast.why_not)
-		log_notice("forecast: job %s has none: %s", j->queue.job.id,
-			   f->forecast.why_not);
-	else if (f->err < 0)
-		log_notice("forecast: job %s has none: %s", j->queue.job.id,
-			   strerror(-f->err));
-	else
-		log_info("forecast: job %s takes %.0f s, %.0f s of them cut",
-			 j->queue.job.id, f->forecast.cut_s +
-			 f->forecast.other_s, f->forecast.cut_s);
-	take_materials(j, f);
+	struct forecaster *to = &j->forecaster;
+
+	correct_materials(j, f);
+	tell(j, f, whole_s(j, f));
+	if (f->block >= 0 || j->queue.job.n != f->n)
+		return;
+	memcpy(to->electrode, f->electrode, sizeof(to->electrode));
+	memcpy(to->work, f->work, sizeof(to->work));
 	if (f->err == 0 && eta_give(&j->eta, &f->forecast, f->n) == 0)
 		take_learnt(j);
 }
@@ -145,13 +186,14 @@ static int on_forecast(sd_event_source *source, int fd, uint32_t events,
 	(void)source, (void)fd, (void)events;
 	pthread_join(f->thread, NULL);
 	j->forecaster.now = NULL;
-	if (j->queue.job.n == f->n)
+	if (f->err != -ECANCELED)
 		take(j, f);
 	forecasting_free(f);
 	return 0;
 }
 
-static int begin(struct jobs *j, uint32_t n)
+/* @block belongs to it. */
+static int begin(struct jobs *j, const struct store_job *job, int block)
 {
 	struct forecasting *f = calloc(1, sizeof(*f));
 	int err;
@@ -160,7 +202,10 @@ static int begin(struct jobs *j, uint32_t n)
 		return -ENOMEM;
 	f->jobs = j;
 	f->config = j->config;
-	f->n = n;
+	f->n = job->n;
+	f->block = block;
+	snprintf(f->id, sizeof(f->id), "%s", job->id);
+	snprintf(f->name, sizeof(f->name), "%s", job->name);
 	snprintf(f->machine, sizeof(f->machine), "%s", j->machine);
 	f->fd = eventfd(0, EFD_CLOEXEC);
 	err = f->fd < 0 ? -errno :
@@ -197,21 +242,75 @@ static void follow(struct jobs *j)
 		  (int)t.left_s / 60, (int)t.left_s % 60);
 }
 
-void forecaster_step(struct jobs *j)
+/* -- Those that wait ------------------------------------------------------- */
+
+static void on_compiled(void *arg, struct compiler_result *r)
+{
+	struct jobs *j = arg;
+	struct forecaster *f = &j->forecaster;
+	const int block = r->err == 0 ? dup(r->block) : -1;
+
+	f->compile = NULL;
+	free(f->text);
+	f->text = NULL;
+	/* Why it cannot be compiled is told when it is loaded. */
+	if (block < 0 || begin(j, &f->next, block) < 0)
+		store_set_forecast(j->store, f->next.n, -1);
+}
+
+static void look(struct jobs *j)
+{
+	struct forecaster *f = &j->forecaster;
+	struct compiler_request r;
+	size_t bytes = 0;
+	int err;
+
+	f->looks = store_unforecast(j->store, &f->next) == 0;
+	if (!f->looks)
+		return;
+	err = load_request(j, &f->next, &r);
+	if (err == 0 && !*r.text_file)
+		err = store_text(j->store, f->next.n, &f->text, &bytes);
+	r.text = f->text;
+	r.bytes = bytes;
+	if (err == 0)
+		err = compiler_start(&f->compile, j->event, &r, on_compiled, j);
+	if (err == 0)
+		return;
+	free(f->text);
+	f->text = NULL;
+	store_set_forecast(j->store, f->next.n, -1);
+}
+
+static void begin_one(struct jobs *j)
 {
 	const struct queue *q = &j->queue;
 	struct forecaster *f = &j->forecaster;
+	const bool loaded = q->job.n && f->of != q->job.n &&
+			    q->snap.program == q->job.n;
 
-	if (j->eta.n && j->eta.n != q->job.n)
-		eta_fini(&j->eta);
-	if (f->now && f->now->n != q->job.n)
+	if (f->now && (loaded || (f->now->block < 0 &&
+				  f->now->n != q->job.n)))
 		atomic_store(&f->now->ends, true);
 	if (!q->job.n)
 		f->of = 0;
-	else if (!f->now && f->of != q->job.n && q->snap.program == q->job.n) {
+	if (f->now || f->compile)
+		return;
+	if (loaded) {
 		f->of = q->job.n;
-		begin(j, q->job.n);
+		begin(j, &q->job, -1);
+	} else if (f->looks && j->link.state == LINK_OK && !q->compile) {
+		look(j);
 	}
+}
+
+void forecaster_step(struct jobs *j)
+{
+	const struct queue *q = &j->queue;
+
+	if (j->eta.n && j->eta.n != q->job.n)
+		eta_fini(&j->eta);
+	begin_one(j);
 	if (j->eta.n && q->snap.program == q->job.n)
 		follow(j);
 }
@@ -242,4 +341,7 @@ void forecaster_fini(struct jobs *j)
 	}
 	j->forecaster.now = NULL;
 	eta_fini(&j->eta);
+	if (compiler_destroy(j->forecaster.compile))
+		free(j->forecaster.text);
+	j->forecaster.compile = NULL;
 }

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * forecaster.h - the job in the machine is run in virtual time, in a thread of
- * its own
+ * forecaster.h - jobs are run in virtual time, one after the other, in a thread
+ * of its own
  *
- * It begins when the job is loaded, and takes as long as the processor needs
- * for the periods of the job: a second for some ten minutes of machine time.
- * Until it is done there is no estimate.  When another job is loaded, or this
- * service ends, it gives up.
+ * The job in the machine goes first, and begins when it is loaded.  Those that
+ * wait follow in their order; each is compiled for it, as the machine stands,
+ * and what it will take is kept in the store.  One takes as long as the
+ * processor needs for the periods of the job: a second for some ten minutes of
+ * machine time.  Until it is done there is no estimate.  For a job that is
+ * loaded, or if this service ends, it gives up.
  *
  * Threads: one, that of the event loop, which also gets the result.
  */
@@ -15,13 +17,22 @@
 
 #include <stdint.h>
 
+#include "store.h"
+
+struct compiler;
 struct forecasting;
 struct jobs;
 
 /* Private; all 0 at first. */
 struct forecaster {
 	struct forecasting *now;	/* NULL: none is under way */
-	uint32_t of;			/* the job that was run last, or is */
+	uint32_t of;			/* the job in the machine that was run
+					 * last, or is */
+	bool looks;			/* there may be jobs that wait and have
+					 * no forecast */
+	struct compiler *compile;	/* of one of these; NULL: none */
+	struct store_job next;		/* that one ... */
+	char *text;			/* ... and its text, if it is short */
 	char electrode[64], work[64];	/* materials of that job; "" */
 };
 

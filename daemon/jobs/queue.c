@@ -30,6 +30,8 @@ bool queue_is_leaving(const struct queue *q)
 void queue_recount(struct jobs *j)
 {
 	j->queue.behind = store_waiting(j->store);
+	j->queue.behind_s = store_waiting_s(j->store, &j->queue.untold);
+	j->forecaster.looks = true;
 }
 
 static void set_waiting(struct jobs *j, bool waiting)
@@ -545,7 +547,7 @@ void queue_step(struct jobs *j, int64_t now_us)
 	if (q->job.n && s->program == q->job.n) {
 		q->missing_us = 0;
 		q->snap = *s;
-		q->depth_mm = fmax(q->depth_mm, s->depth_mm);
+		q->depth_mm = fmax(q->depth_mm, s->depth_far_mm);
 		tally_look(j, now_us);
 		electrode_follow(j);
 		if (queue_is_leaving(q))

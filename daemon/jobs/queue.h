@@ -33,7 +33,9 @@ struct queue {
 	double depth_mm;		/* greatest depth of that job */
 	uint32_t run;			/* ... as in struct checkpoint_job */
 	int32_t start_pulses[SHM_NAXES];	/* where its program begins */
-	uint32_t behind;		/* jobs that wait */
+	uint32_t behind;		/* jobs that wait, ... */
+	uint32_t untold;		/* ... those without a forecast, */
+	double behind_s;		/* and what the others will take */
 	bool waiting;			/* for "start" */
 	uint32_t promised;		/* the job that was started, or 0 */
 	/* Private. */

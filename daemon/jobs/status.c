@@ -39,8 +39,7 @@ static double end_s(const struct jobs *j, double left_s)
 	const double speed = config_machine_is(j->config, MACHINE_MODEL) ?
 			     (double)j->config->sim.speed : 1;
 
-	return left_s >= 0 && j->queue.job.state == JOB_RUNNING ?
-	       (double)jobs_utime() / 1e6 + left_s / speed : 0;
+	return (double)jobs_utime() / 1e6 + left_s / speed;
 }
 
 /* Without an estimate the share is that of the way. */
@@ -56,7 +55,11 @@ static void fill_time(struct jobs_lcm_status *w, const struct jobs *j)
 	w->eta_min_s = t.min_s;
 	w->eta_max_s = t.max_s;
 	w->eta_by = eta_word(t.by);
-	w->end_s = end_s(j, t.left_s);
+	w->end_s = t.left_s >= 0 && j->queue.job.state == JOB_RUNNING ?
+		   end_s(j, t.left_s) : 0;
+	w->queue_s = j->queue.behind_s;
+	w->queue_untold = j->queue.untold;
+	w->queue_end_s = end_s(j, fmax(0, t.left_s) + w->queue_s);
 	if (t.by)
 		w->eta_condition = j->eta.forecast.cond[t.cond];
 	w->eta_factor = t.factor;
@@ -78,6 +81,7 @@ static void fill_job(struct jobs_lcm_status *w, const struct jobs *j)
 	w->place_mm = s->place_mm;
 	w->length_mm = s->length_mm;
 	w->depth_mm = s->depth_mm;
+	w->depth_far_mm = s->depth_far_mm;
 	w->jumps = s->jumps;
 	w->retracts = s->retracts;
 	w->shorts = s->shorts;
@@ -86,8 +90,10 @@ static void fill_job(struct jobs_lcm_status *w, const struct jobs *j)
 	w->queue_len = q->behind;
 }
 
-static void fill_machine(struct jobs_lcm_status *w, const struct link *l)
+static void fill_machine(struct jobs_lcm_status *w, const struct jobs *j)
 {
+	const struct machine_config *c = j->config;
+	const struct link *l = &j->link;
 	const struct shm_snapshot *s = &l->snap;
 	static char faults[512];
 	bool there = l->state == LINK_OK;
@@ -102,6 +108,9 @@ static void fill_machine(struct jobs_lcm_status *w, const struct link *l)
 		w->gap_v = s->gap_v;
 		w->feed_mm_s = s->feed_mm_s;
 	}
+	w->process = config_process_name(c);
+	w->height_mm = config_wire_height_mm(c);
+	w->lean_deg = config_wire_lean_deg(c, w->pos_mm);
 	w->overruns = s->overruns;
 	w->wake_late_max_us = (uint32_t)(s->wake_late_max_ns / 1000);
 }
@@ -164,7 +173,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 	if (j->link.state == LINK_ABSENT && now_us - j->begun_us < GRACE_US)
 		return;
 	due_sent(&j->status, key, now_us);
-	fill_machine(&w, &j->link);
+	fill_machine(&w, j);
 	w.contour_mm = j->twin.last.measured_mm;
 	w.contour_predicted_mm = j->twin.last.predicted_mm;
 	fill_job(&w, j);

@@ -223,6 +223,19 @@ int store_head(struct store *s, struct store_job *ret)
 	return job_get(q, err, ret);
 }
 
+int store_unforecast(struct store *s, struct store_job *ret)
+{
+	int err;
+	sqlite3_stmt *q = store_ask(s, &err, "SELECT " JOB_COLUMNS " FROM job "
+				    "INDEXED BY job_by_turn WHERE state IN "
+				    "('queued', 'interrupted') AND "
+				    "+state='queued' AND loaded=0 AND "
+				    "forecast_s IS NULL ORDER BY "
+				    STORE_IN_QUEUE " LIMIT 1", "");
+
+	return job_get(q, err, ret);
+}
+
 /* -- Its text ------------------------------------------------------------- */
 
 /* SQLite does not always notice that a page comes back with other bytes. */
@@ -334,6 +347,12 @@ int store_set_tech(struct store *s, uint32_t n, const char *sha256)
 {
 	return store_do(s, STORE_KEEP, "UPDATE job SET tech_sha256=? WHERE n=?",
 			"sI", sha256, (int64_t)n);
+}
+
+int store_set_forecast(struct store *s, uint32_t n, double forecast_s)
+{
+	return store_do(s, STORE_KEEP, "UPDATE job SET forecast_s=? WHERE n=?",
+			"dI", forecast_s, (int64_t)n);
 }
 
 int store_interrupt(struct store *s, uint32_t n, const char *at)

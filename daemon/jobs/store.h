@@ -186,6 +186,10 @@ int store_end(struct store *s, uint32_t n, const struct store_end *e);
 int store_give_up(struct store *s, uint32_t n, const char *reason,
 		  int64_t now_us);
 int store_set_tech(struct store *s, uint32_t n, const char *sha256);
+/** store_set_forecast() - it will take @s; -1: that cannot be told. */
+int store_set_forecast(struct store *s, uint32_t n, double forecast_s);
+/** store_unforecast() - the first that waits and has no forecast. */
+int store_unforecast(struct store *s, struct store_job *ret);
 /** store_interrupt() - @at: its checkpoint, hex, for store_resume_at(). */
 int store_interrupt(struct store *s, uint32_t n, const char *at);
 /**
@@ -212,6 +216,9 @@ int store_commit(struct store *s);
 
 /** store_waiting() - jobs that are queued and not loaded. */
 uint32_t store_waiting(struct store *s);
+/** store_waiting_s() - what these will take; @ret_untold: not counting so many
+ *  of them, of which that is not known. */
+double store_waiting_s(struct store *s, uint32_t *ret_untold);
 
 /**
  * store_number() - a number that is kept by name; @otherwise if there is none.

@@ -142,6 +142,10 @@ static const char *const steps[] = {
 	" condition TEXT NOT NULL, electrode TEXT NOT NULL, work TEXT NOT NULL,"
 	" passed_s REAL NOT NULL, expected_s REAL NOT NULL,"
 	" jobs INTEGER NOT NULL, PRIMARY KEY(condition, electrode, work));",
+
+	/* What it will take.  NULL: nobody has looked yet; below 0: it cannot
+	 * be told. */
+	"ALTER TABLE job ADD COLUMN forecast_s REAL;",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

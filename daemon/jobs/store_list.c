@@ -33,13 +33,15 @@
 			"place_mm, 'length_mm', length_mm, 'depth_mm', " \
 			"depth_mm, 'job_s', job_s, 'jumps', jumps, " \
 			"'retracts', retracts, 'shorts', shorts, " \
-			"'tech_sha256', tech_sha256" ELECTRODES_JSON MORE ")"
+			"'forecast_s', forecast_s, 'tech_sha256', " \
+			"tech_sha256" ELECTRODES_JSON MORE ")"
 
 /* Of a job that waits there may be thousands. */
 #define QUEUED_JSON	"json_object('n', n, 'job', id, 'name', name, " \
 			"'state', state, 'hold', json(iif(hold, 'true', " \
 			"'false')), 'lines', lines, 'submitted_us', " \
-			"submitted_us, 'reason', reason)"
+			"submitted_us, 'reason', reason, 'forecast_s', " \
+			"forecast_s)"
 
 /* What it came to.  Energy is null where the machine does not count it. */
 #define SUMS_JSON	", 'first_us', first_us, 'erode_s', erode_s, " \

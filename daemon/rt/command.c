@@ -313,6 +313,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->job.stopped = false;
 	c->job.rejoin_mm = 0;
 	probe_load(c);
+	depth_load(c);
 	cycle_enter(c, STATE_HOLD);
 	return ANSWER_DONE;
 }

@@ -238,6 +238,7 @@ static void sum_up(struct cycle *c, bool running)
 	if (c->state == STATE_JUMP)
 		c->totals.jump_cycles++;
 	flush_watch(c);
+	depth_watch(c);
 }
 
 /* Where it is on its way back to a cut there is none, nor in the cycle that

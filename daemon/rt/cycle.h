@@ -25,6 +25,7 @@
 #include "axes/axes.h"
 #include "axes/comp.h"
 #include "axes/contouring.h"
+#include "path/depth.h"
 #include "path/escape.h"
 #include "fault.h"
 #include "gap/flush.h"
@@ -252,6 +253,7 @@ struct cycle {
 					 * yet */
 	struct mcode mcode;
 	struct progress progress;
+	struct depth depth;
 	double back_mm;			/* the way back ends at this place */
 	double turned_mm;		/* the farthest place that a retract or
 					 * a jump left, since the start; it was

@@ -127,6 +127,7 @@ enum cycle_restored cycle_restore(struct cycle *c,
 	c->resync.moved_beside = past->moved_beside;
 	c->resync.sure_beside = escape_is_out(&c->escape);
 	c->totals = past->totals;
+	c->depth = past->depth;
 	return RESTORED;
 }
 

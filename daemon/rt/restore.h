@@ -26,6 +26,7 @@ struct cycle_past {
 	uint8_t mcode;			/* the PLC was told this code and has
 					 * not answered; 0: none */
 	uint32_t mcode_at;		/* the segment of that code */
+	struct depth depth;
 	struct stand stand;		/* NONE: it ran */
 	struct cycle_totals totals;
 	const struct conditions_set *sets;

@@ -207,6 +207,20 @@ int shm_program_read(const void **ret, size_t *ret_bytes, const char *machine,
 	return program_open(ret, ret_bytes, machine, n, own_or_copy);
 }
 
+int shm_program_map(const void **ret, size_t *ret_bytes, int fd)
+{
+	const int64_t size = program_size(fd);
+	void *at = NULL;
+	const int err = size < 0 ? (int)size :
+			object_map(&at, fd, (size_t)size, false);
+
+	if (err < 0)
+		return err;
+	*ret = at;
+	*ret_bytes = (size_t)size;
+	return 0;
+}
+
 struct shm_stamp shm_program_stamp(const char *machine, uint32_t n)
 {
 	char path[OBJECT_PATH_MAX];

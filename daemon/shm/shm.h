@@ -50,7 +50,7 @@
 #include <ck_ring.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	14
+#define SHM_LAYOUT	15
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NGENERATOR	6		/* values of a generator */
 #define SHM_NTOLD	15		/* what it tells: PROCESS_NTOLD */
@@ -119,8 +119,8 @@ struct shm_snapshot {
 	double pulse_mm[SHM_NAXES];
 	double place_mm, far_mm, length_mm;	/* along the path */
 	double feed_mm_s, gap_v;
-	double depth_mm;		/* travel of Z below the program's
-					 * start */
+	double depth_mm, depth_far_mm;	/* of the cut, below its first spark:
+					 * now, and the deepest */
 	/* Sums of the job. */
 	uint64_t job_cycles, erode_cycles, jump_cycles;
 	uint32_t retracts, jumps, shorts, overruns;
@@ -169,6 +169,9 @@ struct shm_snapshot {
 					 * the path */
 	bool has_origin;
 	bool confirmed;			/* what the stand asks for is done */
+	bool depth_counts, depth_met;	/* for the next edmd: struct depth */
+	int32_t depth_from[3];
+	double depth_way[3], depth_known_mm;
 	uint32_t stand_of;		/* the electrode's number; a bit of each
 					 * field to set */
 	uint32_t kept_stand, kept_of;	/* the same of the job, also while a
@@ -600,6 +603,9 @@ int shm_program_open(const void **ret, size_t *ret_bytes, const char *machine,
  */
 int shm_program_read(const void **ret, size_t *ret_bytes, const char *machine,
 		     uint32_t n);
+
+/** shm_program_map() - one of this process, by its descriptor. */
+int shm_program_map(const void **ret, size_t *ret_bytes, int fd);
 void shm_program_unmap(const void *block, size_t bytes);
 
 /** SHM_PROGRAM_AHEAD - a name until it is known which n it will have. */

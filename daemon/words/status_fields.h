@@ -30,6 +30,10 @@
 	NUMBER(gap_v) \
 	NUMBER(feed_mm_s) \
 	NUMBER(depth_mm) \
+	NUMBER(depth_far_mm) \
+	WORD(process) \
+	NUMBER(height_mm) \
+	NUMBER(lean_deg) \
 	COUNT(jumps) \
 	COUNT(retracts) \
 	COUNT(shorts) \
@@ -42,6 +46,9 @@
 	NUMBER(eta_factor) \
 	NUMBER(end_s) \
 	COUNT(queue_len) \
+	NUMBER(queue_s) \
+	COUNT(queue_untold) \
+	NUMBER(queue_end_s) \
 	COUNT(overruns) \
 	COUNT(wake_late_max_us) \
 	WORD(condition) \

@@ -134,11 +134,10 @@ def test_ctrl_c_leaves_the_job_running(machine):
     machine.client.job_where(job, "done")
 
 
-def test_watch_redraws_one_line_on_a_terminal(machine):
+def on_terminal(machine, *args):
     main, tty = pty.openpty()
     p = subprocess.Popen(
-        [str(BUILD / "edmctl"), "--machine", machine.name, "submit",
-         write(machine, "slow.ngc", SLOW_JOB), "--wait"],
+        [str(BUILD / "edmctl"), "--machine", machine.name, *args],
         stdout=tty, stderr=tty, env={**os.environ, "TERM": "xterm"},
     )
     os.close(tty)
@@ -152,11 +151,25 @@ def test_watch_redraws_one_line_on_a_terminal(machine):
             break
         out += piece
     os.close(main)
-    assert p.wait(timeout=60) == 0
-    drawn = [x for x in out.split(b"\r") if b"%" in x]
+    return p.wait(), out.decode()
+
+
+def test_submit_tells_how_long_it_takes(machine):
+    """On the null machine there is nothing to run it on."""
+    path = write(machine, "slow.ngc", SLOW_JOB)
+    code, out = on_terminal(machine, "submit", path, "--hold")
+    assert code == 0
+    assert " takes 0 h 00 min 0" in out.splitlines()[-1]
+
+
+def test_watch_redraws_one_line_on_a_terminal(machine):
+    path = write(machine, "slow.ngc", SLOW_JOB)
+    code, out = on_terminal(machine, "submit", path, "--wait")
+    assert code == 0
+    drawn = [x for x in out.split("\r") if "%" in x]
     assert len(drawn) > 1
-    assert all(b"\n" not in x for x in drawn[:-1])
-    assert any(b"=" in x and b"left" in x for x in drawn)
+    assert all("\n" not in x for x in drawn[:-1])
+    assert any("=" in x and "left" in x for x in drawn)
 
 
 def test_watch_once_status_and_lists(machine):
@@ -249,7 +262,8 @@ def test_a_list_has_its_columns_whatever_the_names_are(machine):
     for i, name in enumerate(("kurz", "Gesenk für Läufer", 63 * "x")):
         assert c.submit(QUICK_JOB, 20 * f"{i}", name=name, hold=True).code == 0
     c.job_where(20 * "0", "ready")
-    head, *rows = machine.ctl("queue").stdout.splitlines()
+    head, *rows = [x for x in machine.ctl("queue").stdout.splitlines()
+                   if not x.startswith("all of it takes ")]
     assert len(rows) == 3
     assert {r[head.index("STATE") - 1:][:3] for r in rows} <= {" re", " qu"}
 

@@ -46,7 +46,8 @@ def test_a_cavity_is_eroded_to_depth(sinker):
     assert "erode" in {s.state for s in sinker.client.statuses}
     j = sinker.client.job("cavity")
     assert j["state"] == "done"
-    assert j["depth_mm"] == pytest.approx(0.5, abs=2e-3)
+    # From the first spark, which comes within the gap.
+    assert 0.5 - 0.06 < j["depth_mm"] <= 0.5
     assert j["path_mm"] == pytest.approx(0.5, abs=1e-3)
     assert j["jumps"] > 0
 

@@ -83,6 +83,7 @@ class MachineState(IdlStruct, typename="edm.MachineState"):
     told_energy_j: float64
     told_fault: float64
     generator_fault: bounded_str[63]
+    depth_far_mm: float64
 
 
 class Peer:

@@ -4,6 +4,7 @@
 No test here asks how fast the host is: all times are those of the job.
 """
 
+import json
 import pathlib
 import re
 import sqlite3
@@ -102,3 +103,36 @@ def test_a_store_of_before_has_the_table(slow):
     """The step that makes it is taken once."""
     db = sqlite3.connect(next(slow.store.glob("*.db")))
     assert db.execute("SELECT count(*) FROM learnt").fetchone() == (0,)
+
+
+def test_jobs_that_wait_have_a_time_and_so_has_the_queue(slow):
+    c = slow.client
+    s = held(slow, "one")
+    assert c.submit(SINK, "two", hold=True).code == 0
+    assert c.submit(SINK.replace(b"Z-0.8", b"Z-0.4"), "three").code == 0
+    told = c.status_where(lambda s: s.queue_s > 0 and s.queue_untold == 0,
+                          timeout=60)
+    rows = {j["job"]: j for j in json.loads(c.ask("queue").body)}
+    takes = {k: rows[k]["forecast_s"] for k in rows}
+    assert takes["one"] == pytest.approx(s.eta_s, rel=0.01)
+    assert takes["two"] == pytest.approx(s.eta_s, rel=0.01)
+    assert 0.3 < takes["three"] / takes["two"] < 0.7
+    assert told.queue_s == pytest.approx(takes["two"] + takes["three"],
+                                         abs=0.01)
+    p = slow.ctl("queue")
+    assert p.stdout.splitlines()[-1].startswith("all of it takes ")
+    assert "; if nothing is held, it ends " in p.stdout
+    assert c.ask("remove", job="two").code == 0
+    left = c.status_where(lambda s: s.queue_len == 1)
+    assert left.queue_s == pytest.approx(takes["three"], abs=0.01)
+
+
+def test_what_cannot_be_forecast_says_why(slow):
+    c = slow.client
+    held(slow, "one")
+    text = b"G21 G90\nG80 Z-\nG92 Z0\nM30\n"
+    assert c.submit(text, "felt", hold=True).code == 0
+    told = rig.until(lambda: [e for e in c.hear(0.05) or c.events
+                              if e.kind == "forecast" and e.job == "felt"])
+    assert "cannot be told: " in told[0].text
+    assert c.status_where(lambda s: s.queue_untold == 1).queue_s == 0

@@ -525,6 +525,7 @@ static void places_of_other_drives_are_not_believed(void **st)
 static void what_was_set_is_in_force_again(void **st)
 {
 	struct world w;
+	double deep;
 
 	(void)st;
 	world_init(&w);
@@ -538,6 +539,8 @@ static void what_was_set_is_in_force_again(void **st)
 			 ANSWER_DONE);
 	assert_int_equal(ask(&w, CYCLE_OVERRIDE, 0, 0.25), ANSWER_DONE);
 	period(&w, SPARKING_V);
+	deep = w.l.cycle.depth.cut.far_mm;
+	assert_true(deep > 0.5);
 	crash(&w);
 	assert_true(w.l.cycle.loaded);
 	assert_near(w.l.cycle.gap.servo_v, 47, 0);
@@ -545,6 +548,8 @@ static void what_was_set_is_in_force_again(void **st)
 	assert_near(w.l.cycle.override, 0.25, 0);
 	assert_true(io_is_negative(&w.l.cycle.out));
 	assert_int_equal(w.l.cycle.conditions.nsets, 3);
+	assert_near(w.l.cycle.depth.cut.far_mm, deep, 0);
+	assert_int_equal(w.l.cycle.depth.cut.counts, 1);
 	/* And a second time, with nothing set in between. */
 	period(&w, OPEN_V);
 	crash(&w);

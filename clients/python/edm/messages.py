@@ -18,7 +18,7 @@ SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
-STATUS = bytes.fromhex("555184cde6b3dcd1")
+STATUS = bytes.fromhex("58c33f971016a287")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -215,6 +215,10 @@ class Status:
     gap_v: float = 0.0
     feed_mm_s: float = 0.0
     depth_mm: float = 0.0
+    depth_far_mm: float = 0.0
+    process: str = ""
+    height_mm: float = 0.0
+    lean_deg: float = 0.0
     contour_mm: float = 0.0
     contour_predicted_mm: float = 0.0
     jumps: int = 0
@@ -229,6 +233,9 @@ class Status:
     eta_factor: float = 0.0
     end_s: float = 0.0
     queue_len: int = 0
+    queue_s: float = 0.0
+    queue_untold: int = 0
+    queue_end_s: float = 0.0
     overruns: int = 0
     wake_late_max_us: int = 0
     condition: str = ""
@@ -277,6 +284,10 @@ class Status:
                 + put.double(self.gap_v)
                 + put.double(self.feed_mm_s)
                 + put.double(self.depth_mm)
+                + put.double(self.depth_far_mm)
+                + put.string(self.process)
+                + put.double(self.height_mm)
+                + put.double(self.lean_deg)
                 + put.double(self.contour_mm)
                 + put.double(self.contour_predicted_mm)
                 + put.int32_t(self.jumps)
@@ -291,6 +302,9 @@ class Status:
                 + put.double(self.eta_factor)
                 + put.double(self.end_s)
                 + put.int32_t(self.queue_len)
+                + put.double(self.queue_s)
+                + put.int32_t(self.queue_untold)
+                + put.double(self.queue_end_s)
                 + put.int32_t(self.overruns)
                 + put.int32_t(self.wake_late_max_us)
                 + put.string(self.condition)
@@ -342,6 +356,10 @@ class Status:
             r.double(),
             r.double(),
             r.double(),
+            r.string(),
+            r.double(),
+            r.double(),
+            r.double(),
             r.double(),
             r.int32_t(),
             r.int32_t(),
@@ -355,6 +373,9 @@ class Status:
             r.double(),
             r.double(),
             r.int32_t(),
+            r.double(),
+            r.int32_t(),
+            r.double(),
             r.int32_t(),
             r.int32_t(),
             r.string(),

@@ -91,6 +91,7 @@ static void write_head(const struct interp_build *b,
 		h->start_pulses[i] = interp_round_sub(b->first[i]);
 	}
 	h->probed = b->probed;
+	h->depth = b->depth;
 	h->lines = about->lines;
 	memcpy(h->hash, about->hash, sizeof(h->hash));
 	snprintf(h->name, sizeof(h->name), "%s",

@@ -419,7 +419,7 @@ static int join(struct from *f)
 		err = join_segs(b, &way->segs, left_out);
 	if (err < 0)
 		return err;
-	f->entry->way_mm = way->length_mm;
+	f->entry->way_mm = b->depth.known_mm = way->length_mm;
 	swap(&b->nodes, &way->nodes);
 	b->timed = 0;
 	b->inside.nway = (uint32_t)nway;
@@ -484,6 +484,7 @@ int build_leave_out(struct interp_build *b, const struct interp_build_from *o,
 		return err;
 	s = segs_of(b);
 	b->probed = o->probed;
+	b->depth = o->depth;
 	ret->from_mm = s[f.last].s_mm + s[f.last].length_mm;
 	for (size_t i = f.last + 1; !ret->next_line && i < b->segs.n; i++)
 		ret->next_line = s[i].length_mm > 0 ? s[i].line : 0;

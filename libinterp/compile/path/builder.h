@@ -77,6 +77,7 @@ struct interp_build {
 	uint32_t loose;			/* axes that moved by what the machine
 					 * says */
 	struct interp_probed probed;	/* before it begins */
+	struct interp_depth depth;	/* ... likewise */
 	double length_mm;
 	uint64_t walked;		/* lattice points, to build it */
 	struct build_again again;

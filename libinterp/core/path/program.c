@@ -20,6 +20,14 @@ static bool is_place(int64_t pulses)
 	return pulses <= INTERP_PULSES_MAX && pulses >= -INTERP_PULSES_MAX;
 }
 
+static bool depth_ok(const struct interp_depth *d)
+{
+	for (int k = 0; k < 3; k++)
+		if (!isfinite(d->way[k]) || !is_place(d->from[k]))
+			return false;
+	return isfinite(d->far_mm) && isfinite(d->known_mm);
+}
+
 static bool axes_ok(const struct interp_program_head *h)
 {
 	uint32_t columns = 0;
@@ -57,7 +65,7 @@ static bool head_ok(const struct interp_program_head *h, size_t bytes)
 	if (h->tolerance_milli > INTERP_TOLERANCE_MAX ||
 	    h->perpendicular > 1 || h->coupling >= INTERP_NCOUPLINGS)
 		return false;
-	return axes_ok(h);
+	return depth_ok(&h->depth) && axes_ok(h);
 }
 
 int interp_program_map(struct interp_program *p, const void *block,

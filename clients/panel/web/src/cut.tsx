@@ -22,6 +22,10 @@ function isKnown(): boolean {
 	return link.connection === "open" && link.state.daemon === "ok";
 }
 
+function isWire(): boolean {
+	return link.hello?.process === 1;
+}
+
 function Gap(p: { onOpen: () => void }): JSX.Element {
 	const s = link.state, v = s.values;
 	const known = isKnown();
@@ -60,9 +64,10 @@ function Feed(p: { onOpen: () => void }): JSX.Element {
 	const feed = feedOfCut() * 60, slow = Math.abs(feed) < 100, most = Math.max(v.feed_max_mm_s ?? 0.5, 0.1);
 	const span = Math.abs(s.feed) > most * 1.5 ? Math.max(v.retract_mm_s ?? 5, Math.abs(s.feed)) : most;
 	const share = Math.min(50, Math.abs(s.feed) / span * 50);
+	const height = link.hello?.height ?? 0;
 	const way = feed > 1e-4 ? "cut.forward" : feed < -1e-4 ? "cut.back" : "cut.still";
 	return <Card class="feed" label={t("cut.feed")}>
-		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{isKnown() ? number(feed, slow ? 2 : 0, true) : "\u2013"}</b> <u>mm/min</u> {isKnown() && <em>{t(way)}</em>}</p></div>
+		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{isKnown() ? number(feed, slow ? 2 : 0, true) : "\u2013"}</b> <u>mm/min</u> {isKnown() && <em>{height > 0 ? `${number(feed * height, 1, true)} mm\u00b2/min` : t(way)}</em>}</p></div>
 		<div class="bar feedbar" aria-hidden="true"><i class={s.feed < 0 ? "flow back" : "flow"} style={s.feed < 0 ? { right: "50%", width: `${share}%` } : { left: "50%", width: `${share}%` }} /><i class="zero" /></div>
 		<button type="button" class="stripkey" onClick={p.onOpen} aria-label={t("chart.feed")}>
 			<Strip points={link.points} at={4} colour="--done" label={t("chart.feed")} height={44} span={60} lines={[0]} clip={[-most * 1.2, most * 1.2]} /></button>
@@ -100,11 +105,12 @@ function TimeNote(): JSX.Element | null {
 function Sums(): JSX.Element {
 	const s = link.state;
 	return <Card class="sums" label={t("cut.done")}>
-		<div class="three"><div><span>{t("cut.depth")}</span><p><b>{number(s.depth, 3)}</b> <u>mm</u></p></div>
+		<div class="three">{isWire() ? <div><span>{t("cut.lean")}</span><p><b>{number(s.lean, 2)}</b> <u>deg</u></p></div> :
+			<div><span>{t("cut.depth")}</span><p><b>{number(s.depth, 3)}</b> <u>mm</u></p>{s.depthFar > s.depth + 5e-4 && <small>{t("cut.deepest", { mm: number(s.depthFar, 3) })}</small>}</div>}
 			<div><span>{t("cut.done")}</span><p><b>{number(s.progress * 100, 1)}</b> <u>%</u></p></div>
 			<div><span>{t("cut.left")}</span><p><b>{left()}</b></p></div></div>
 		<TimeNote />
-		<div class="counts"><span>{t("cut.jumps")} <b>{s.jumps}</b></span><span>{t("cut.retracts")} <b>{s.retracts}</b></span>
+		<div class="counts">{!isWire() && <span>{t("cut.jumps")} <b>{s.jumps}</b></span>}<span>{t("cut.retracts")} <b>{s.retracts}</b></span>
 			<span>{t("cut.shorts")} <b>{s.shorts}</b></span><span>{t("cut.time")} <b>{duration(s.jobS)}</b></span>{s.electrode > 0 && <span id="held">{t("cut.electrode")} <b>{s.electrode}</b></span>}</div>
 	</Card>;
 }
@@ -147,12 +153,14 @@ interface Chip { id: string; label: string; text: string; open: string }
 function chips(): Chip[] {
 	const s = link.state, v = s.values;
 	const f = (name: string, unit: string) => v[name] === undefined ? "\u2013" : `${short(v[name] as number)} ${unit}`;
+	const wire = [{ id: "height", label: t("cut.height"), text: `${short(link.hello?.height ?? 0)} mm`, open: "*" }];
+	const jump = [{ id: "jump_mm", label: t("cut.jump"), text: v.jump_mm === undefined ? "\u2013" : `${short(v.jump_mm)} mm / ${short(v.jump_every_s ?? 0)} s`, open: "jump_mm jump_every_s" }];
 	return [
 		{ id: "condition", label: t("cut.condition"), text: s.condition || "\u2013", open: "*" },
 		{ id: "peak_a", label: t("cut.peak"), text: f("peak_a", "A"), open: "peak_a" },
 		{ id: "on_us", label: t("cut.onoff"), text: v.on_us === undefined ? "\u2013" : `${short(v.on_us)} / ${short(v.off_us ?? 0)} \u00b5s`, open: "on_us off_us" },
 		{ id: "servo_v", label: t("cut.servochip"), text: f("servo_v", "V"), open: "servo_v" },
-		{ id: "jump_mm", label: t("cut.jump"), text: v.jump_mm === undefined ? "\u2013" : `${short(v.jump_mm)} mm / ${short(v.jump_every_s ?? 0)} s`, open: "jump_mm jump_every_s" },
+		...(isWire() ? wire : jump),
 		{ id: "override", label: t("cut.override"), text: `${number(s.override * 100, 0)} %`, open: "%" },
 	];
 }

@@ -179,7 +179,7 @@ function Details(p: { id: string; name: string; onClose: () => void }): JSX.Elem
 	return <Sheet title={t("jobs.details", { name: p.name })} onClose={p.onClose} wide>{j && <>
 		<dl class="facts"><dt>{t("jobs.state")}</dt><dd>{jobWord(j.state)}</dd>{j.reason && <><dt>{t("jobs.reason")}</dt><dd>{j.reason}</dd></>}
 			<dt>{t("jobs.time")}</dt><dd>{duration(j.job_s)}</dd><dt>{t("jobs.length")}</dt><dd>{number(j.path_mm ?? 0, 3)} {t("of")} {number(j.length_mm ?? 0, 3)} mm</dd>
-			<dt>{t("jobs.depth")}</dt><dd>{number(j.depth_mm ?? 0, 3)} mm</dd><dt>{t("cut.jumps")}</dt><dd>{j.jumps ?? 0}</dd><dt>{t("cut.retracts")}</dt><dd>{j.retracts ?? 0}</dd><dt>{t("cut.shorts")}</dt><dd>{j.shorts ?? 0}</dd>
+			{link.hello?.process !== 1 && <><dt>{t("jobs.depth")}</dt><dd>{number(j.depth_mm ?? 0, 3)} mm</dd><dt>{t("cut.jumps")}</dt><dd>{j.jumps ?? 0}</dd></>}<dt>{t("cut.retracts")}</dt><dd>{j.retracts ?? 0}</dd><dt>{t("cut.shorts")}</dt><dd>{j.shorts ?? 0}</dd>
 			<dt>{t("jobs.arcs")}</dt><dd>{j.arcs ?? "\u2013"}</dd><dt>{t("jobs.energy")}</dt><dd>{energy(j.energy_j)}</dd></dl>
 		<Sums job={j} />
 		<h3>{t("jobs.changes")}</h3>

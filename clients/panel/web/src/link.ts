@@ -14,7 +14,7 @@ export interface Field {
 
 export interface Hello {
 	machine: string; user: string; role: Role; version: string; axes: Axis[];
-	fields: Field[]; plc: boolean; simulated: boolean;
+	fields: Field[]; process: number; height: number; plc: boolean; simulated: boolean;
 	table: string;
 }
 
@@ -24,7 +24,7 @@ export interface State {
 	daemon: string; state: string; fault: string; outcome: string; loaded: boolean;
 	power: boolean; pump: boolean; negative: boolean; gap: number; feed: number;
 	override: number; pos: number[]; place: number; far: number; length: number;
-	depth: number; line: number; seg: number; program: number; unhomed: number;
+	depth: number; depthFar: number; lean: number; line: number; seg: number; program: number; unhomed: number;
 	limit: number; jumps: number; retracts: number; shorts: number;
 	overruns: number; lateMaxUs: number; tookMaxUs: number; periodUs: number;
 	jobS: number; condition: string; values: Record<string, number>;
@@ -50,7 +50,7 @@ export type Connection = "waiting" | "open" | "lost" | "login";
 const EMPTY: State = {
 	daemon: "absent", state: "unknown", fault: "none", outcome: "none",
 	loaded: false, power: false, pump: false, negative: false, gap: 0, feed: 0,
-	override: 1, pos: [], place: 0, far: 0, length: 0, depth: 0, line: 0, seg: 0,
+	override: 1, pos: [], place: 0, far: 0, length: 0, depth: 0, depthFar: 0, lean: 0, line: 0, seg: 0,
 	program: 0, unhomed: 0, limit: 0, jumps: 0, retracts: 0, shorts: 0,
 	overruns: 0, lateMaxUs: 0, tookMaxUs: 0, periodUs: 0, jobS: 0, condition: "",
 	values: {}, set: [], told: {}, generator_fault: "", jobs: false, job: "", jobName: "", jobState: "",

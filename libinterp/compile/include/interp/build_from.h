@@ -40,6 +40,7 @@ struct interp_build_from {
 	struct interp_probed probed;	/* by the program, before the place */
 	bool probed_known;		/* false: it is not known what probing
 					 * found */
+	struct interp_depth depth;	/* of the cut, before the place */
 	int up;				/* axis whose + leads out of the work;
 					 * -1: a wire, which is cut off: the way
 					 * is straight, and at its end the

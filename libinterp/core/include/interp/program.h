@@ -52,7 +52,7 @@
 #define INTERP_FAR_BESIDE	1e4
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	14
+#define INTERP_PROGRAM_VERSION	15
 
 /*
  * How three and more axes make a line when they move one at a time.
@@ -305,6 +305,19 @@ struct interp_probed {
 					 * two */
 };
 
+/* Where the cut began to spark before a program begins, if it is the rest of
+ * one.  All 0: it did not. */
+struct interp_depth {
+	double way[3];			/* unit vector in X Y Z: it goes deeper
+					 * so */
+	double far_mm;			/* the deepest so far */
+	double known_mm;		/* up to this place nothing new
+					 * begins */
+	int32_t from[3];		/* the first spark, pulses of the
+					 * axes */
+	uint32_t counts;		/* 1: all of this is known */
+};
+
 struct interp_program_head {
 	char magic[8];
 	uint32_t version;
@@ -332,6 +345,7 @@ struct interp_program_head {
 	double pulse_mm[INTERP_NAXES];
 	int32_t start_pulses[INTERP_NAXES];	/* of every axis, at node 0 */
 	struct interp_probed probed;
+	struct interp_depth depth;
 	uint8_t hash[32];		/* SHA-256 of the source text, or
 					 * zeros */
 	char name[64];			/* of the job; NUL-terminated */
