@@ -14,7 +14,8 @@
 #define ENDED(ROW)	"(" ROW ".state='done' OR " ROW ".state='stopped' OR " \
 			ROW ".state='fault')"
 
-#define TOLD(ROW)	"(" WAITS(ROW) " AND coalesce(" ROW ".forecast_s, -1)>=0)"
+#define TOLD(ROW)	"(" WAITS(ROW) " AND coalesce(" ROW ".forecast_s," \
+			" -1) >= 0)"
 /* Whole numbers: their sum comes back to 0. */
 #define TAKES_MS(ROW)	"iif(" TOLD(ROW) ", CAST(" ROW ".forecast_s * 1e3 AS " \
 			"INTEGER), 0)"
