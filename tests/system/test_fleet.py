@@ -304,7 +304,7 @@ def test_a_hostile_sample_is_shown_as_harmless_text(peer):
         position_mm=[math.nan] * 8,
         generator_state=GeneratorState.GENERATOR_ERROR, is_on=True,
         jumps=0, retracts=0, shorts=0, overruns=0, wake_late_max_us=-1e308,
-        generator_fault="\x1b[2J",
+        generator_fault="\x1b[2J", depth_far_mm=math.inf,
         **{f"told_{n}": math.inf for n in TOLD}, **words)
     writer = DataWriter(peer.participant, peer.topic, qos=peer.writing)
     writer.write(s)
