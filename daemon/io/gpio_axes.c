@@ -58,6 +58,7 @@ void gpio_axes_read(struct gpio *g, struct io_inputs *in)
 	g->joined = has_power(g);
 	in->axes_off = !g->joined;
 	in->unplaced = g->unplaced;
+	in->slips = g->encoders;
 	g->unplaced = 0;
 	for (int i = 0; i < IO_NAXES; i++) {
 		in->actual[i] = gpio_put(g, i);

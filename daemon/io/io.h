@@ -101,6 +101,9 @@ struct io_inputs {
 	int32_t stands_at[IO_NAXES];	/* ... here: pulses */
 	int32_t ran_on[IO_NAXES];	/* pulses that they may have run on by
 					 * themselves when they were stopped */
+	uint32_t slips;			/* bit per axis: pulses that it cannot
+					 * go are lost.  Other axes follow as
+					 * soon as they can */
 	struct io_plc plc;
 	struct io_generator generator;
 	int32_t actual[IO_NAXES];	/* pulses, measured or last written */

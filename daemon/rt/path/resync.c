@@ -60,6 +60,7 @@ static void measure(struct cycle *c, const struct io_inputs *in)
 	struct resync *r = &c->resync;
 
 	r->held = 0;
+	r->slips = in->slips;
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		r->off[i] = minus(in->stands_at[i],
 				  comp_pulses(&c->comp.axis[i]));
@@ -70,15 +71,16 @@ static void measure(struct cycle *c, const struct io_inputs *in)
 	r->is_off = any(r->off);
 }
 
-/* An axis that is not there stands at 0, and is sent there. */
-static bool is_near(const struct cycle *c, const struct io_inputs *in)
+/* Bit per axis.  One that is not there stands at 0, and is sent there. */
+static uint32_t off_now(const struct cycle *c, const struct io_inputs *in)
 {
 	uint32_t far = 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
-		far |= (uint32_t)minus(in->actual[i], c->comp.sent[i]) +
-		       NEAR_PULSES > 2 * NEAR_PULSES;
-	return !far;
+		far |= (uint32_t)((uint32_t)minus(in->actual[i],
+						  c->comp.sent[i]) +
+				  NEAR_PULSES > 2 * NEAR_PULSES) << i;
+	return far;
 }
 
 static bool is_far(const struct cycle *c)
@@ -119,7 +121,8 @@ void resync_begin(struct resync *r, double place_mm)
 	r->sure_beside = false;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		r->moved_mm[i] = place_mm;
-	r->moved_beside = 0;
+	memset(r->moved_way, 0, sizeof(r->moved_way));
+	r->moved_beside = r->adrift = 0;
 	r->unseen = true;
 }
 
@@ -134,6 +137,16 @@ static bool has_moved(const struct resync *r, const struct io_inputs *in)
 	return far;
 }
 
+/* A move of @by pulses of axis @i that its target asks for?  What was blocked
+ * springs back. */
+static bool goes_where_sent(const struct cycle *c, const struct io_inputs *in,
+			    int i, int32_t by)
+{
+	const int32_t lag = minus(c->comp.sent[i], in->actual[i]);
+
+	return lag == 0 || (lag < 0) == (by < 0);
+}
+
 /* Where does the path have each axis while that axis moves? */
 static void note_moves(struct cycle *c, const struct io_inputs *in)
 {
@@ -142,14 +155,35 @@ static void note_moves(struct cycle *c, const struct io_inputs *in)
 	uint32_t moved = 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++) {
-		if (abs(minus(in->actual[i], r->seen[i])) <= NEAR_PULSES)
+		const int32_t by = minus(in->actual[i], r->seen[i]);
+
+		if (abs(by) <= NEAR_PULSES)
 			continue;
 		r->seen[i] = in->actual[i];
+		if (!goes_where_sent(c, in, i, by))
+			continue;
 		r->moved_mm[i] = mm;
+		r->moved_way[i] = by < 0 ? -1 : 1;
 		moved |= 1u << i;
 	}
+	r->adrift &= ~moved;
 	r->moved_beside = (r->moved_beside & ~moved) |
 			  (escape_is_out(&c->escape) ? moved : 0);
+}
+
+/* What moves an axis without power is not its target. */
+static void look_at_moves(struct cycle *c, const struct io_inputs *in)
+{
+	struct resync *r = &c->resync;
+
+	if (in->starting || !c->comp.begun)
+		return;
+	if (r->unseen || (r->stood && !in->axes_off))
+		memcpy(r->seen, in->actual, sizeof(r->seen));
+	else if (c->loaded && !in->axes_off && has_moved(r, in))
+		note_moves(c, in);
+	r->unseen = false;
+	r->stood = in->axes_off;
 }
 
 /* A program is compiled from where the machine stands.  Axes without power
@@ -158,24 +192,39 @@ void resync_look(struct cycle *c, const struct io_inputs *in)
 {
 	struct resync *r = &c->resync;
 
-	if (r->unseen && c->comp.begun && !in->starting) {
-		memcpy(r->seen, in->actual, sizeof(r->seen));
-		r->unseen = false;
-	}
-	if (c->loaded && !r->unseen && has_moved(r, in))
-		note_moves(c, in);
+	look_at_moves(c, in);
+	r->adrift |= off_now(c, in);
 	if (stands(c, in)) {
 		measure(c, in);
 		if (!c->loaded && is_far(c))
 			resync_settle(c);
 	} else if (c->loaded && !in->axes_off && !resync_is_off(c) &&
-		   is_near(c, in)) {
+		   !r->adrift) {
 		r->sure_mm = place_mm(c);
 		r->sure_beside = escape_is_out(&c->escape);
 	}
 }
 
 /* -- The search ------------------------------------------------------------ */
+
+/* Where does axis @i stand, in pulses of the drive? */
+static int32_t stands_at(const struct cycle *c, int i)
+{
+	return plus(comp_pulses(&c->comp.axis[i]), c->resync.off[i]);
+}
+
+/* Was axis @i blocked, and in which direction? */
+static bool seek_axis(const struct cycle *c, struct resync *r, int i)
+{
+	const int beyond = r->off[i] < 0 ? 1 : -1;
+
+	r->way[i] = r->slips >> i & 1 || r->moved_way[i] == 0 ? beyond :
+		    r->moved_way[i];
+	if (r->way[i] != beyond &&
+	    r->way[i] * minus(stands_at(c, i), r->seen[i]) > NEAR_PULSES)
+		return false;
+	return abs(r->off[i]) > NEAR_PULSES;
+}
 
 void resync_search(struct cycle *c)
 {
@@ -185,14 +234,16 @@ void resync_search(struct cycle *c)
 	const double sure_mm = beside == r->sure_beside ? r->sure_mm :
 			       interp_cursor_place_mm(&c->cursor);
 
-	r->held = r->seek = r->met = r->asked = r->near = 0;
+	r->held = r->seek = r->met = r->asked = r->passed = 0;
 	r->walks = r->begun = false;
 	for (int i = 0; i < INTERP_NAXES; i++)
-		r->seek |= (uint32_t)(abs(r->off[i]) > NEAR_PULSES) << i;
+		r->seek |= (uint32_t)seek_axis(c, r, i) << i;
+	r->before = r->seek;
 	if (r->seek == 0)
 		return;
 	r->toward = sure_mm > place_mm(c) ? 1 : -1;
-	r->until_mm = sure_mm + r->toward * MARGIN_MM;
+	r->until_mm = r->seek & r->slips ? r->toward * (double)INFINITY :
+		      sure_mm + r->toward * MARGIN_MM;
 	r->scout = c->cursor;
 	r->beside = c->escape;
 	interp_cursor_aim(&r->scout, r->toward * 1e9);
@@ -236,41 +287,44 @@ static bool scout_step(const struct cycle *c, struct resync *r)
 	return on && r->toward * (r->until_mm - scout_mm(r)) >= 0;
 }
 
-/* In front of moved_mm, where the axis may still have moved by NEAR_PULSES. */
-static void look_near(struct resync *r, int i, int64_t left)
-{
-	const uint32_t bit = 1u << i;
-
-	if (llabs(left) > NEAR_PULSES) {
-		r->near &= ~bit;
-	} else if (left == 0 && !(r->near & bit)) {
-		r->near |= bit;
-		r->met_mm[i] = scout_mm(r);
-	}
-}
-
-/* @left: to where the axis stands. */
+/* One lattice point; @left: from the path to where the axis stands. */
 static void look_for(struct resync *r, int i, int64_t left)
 {
+	const int64_t before = r->way[i] * left;
+	const uint32_t bit = 1u << i;
+
+	if (before < 0) {
+		r->passed &= ~bit;
+		r->before &= ~bit;
+		return;
+	}
+	if (!(r->before & bit) && !(r->passed & bit)) {
+		r->passed |= bit;
+		r->met_mm[i] = scout_mm(r);
+	}
+	if (before > 0)
+		r->before |= bit;
+}
+
+/* In front of moved_mm it may still have moved by NEAR_PULSES. */
+static void look_behind(const struct cycle *c, struct resync *r, int i,
+			int64_t left)
+{
+	const int64_t far = llabs(left) - c->config.resync.max[i] -
+			    r->ran_on[i] - NEAR_PULSES;
 	const uint32_t bit = 1u << i;
 
 	if (!(r->asked & bit))
-		r->left[i] = left;
+		r->left[i] = llabs(left);
 	r->asked |= bit;
-	if (r->near & bit) {
+	if (r->passed & r->before & bit) {
 		r->met |= bit;
 		r->seek &= ~bit;
-	} else if (left == 0 || (left < 0) != (r->left[i] < 0)) {
-		r->met_mm[i] = scout_mm(r);
-		r->met |= bit;
-		r->seek &= ~bit;
-	} else if (llabs(left) > llabs(r->left[i]) + NEAR_PULSES) {
+	} else if (far > r->left[i]) {
 		r->seek &= ~bit;
 	}
 }
 
-/* It is met where the path passes it.  If the path leads away from it, it was
- * not blocked. */
 static void scout_look(const struct cycle *c, struct resync *r)
 {
 	const bool beside = escape_is_out(&r->beside);
@@ -281,11 +335,12 @@ static void scout_look(const struct cycle *c, struct resync *r)
 		const int64_t left = (int64_t)c->out.target[i] + r->off[i] -
 				     pos[i] - c->probe.shift[i];
 
+		look_for(r, i, left);
 		if (beside != (r->moved_beside >> i & 1) ||
 		    r->toward * (r->moved_mm[i] - scout_mm(r)) <= 0)
-			look_for(r, i, left);
-		else
-			look_near(r, i, left);
+			look_behind(c, r, i, left);
+		else if (llabs(left) > NEAR_PULSES)
+			r->passed &= ~(1u << i);
 	}
 }
 
@@ -301,6 +356,13 @@ static enum resync_answer judge(const struct cycle *c)
 	return RESYNC_DONE;
 }
 
+/* Farther back it did not move. */
+static void end_search(struct resync *r)
+{
+	r->met |= r->seek & r->passed;
+	r->seek = 0;
+}
+
 enum resync_answer resync_seek(struct cycle *c)
 {
 	struct resync *r = &c->resync;
@@ -310,7 +372,7 @@ enum resync_answer resync_seek(struct cycle *c)
 		if (scout_step(c, r))
 			scout_look(c, r);
 		else
-			r->seek = 0;
+			end_search(r);
 	}
 	return r->seek ? RESYNC_BUSY : judge(c);
 }
@@ -323,7 +385,7 @@ void resync_leave(struct cycle *c)
 
 	r->held = r->met;
 	for (int i = 0; i < INTERP_NAXES; i++)
-		r->hold[i] = plus(comp_pulses(&c->comp.axis[i]), r->off[i]);
+		r->hold[i] = stands_at(c, i);
 }
 
 /* Along the path, to the next place where an axis is met. */

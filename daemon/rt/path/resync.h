@@ -17,11 +17,19 @@
  * 2. What is then left to an axis goes off on a straight line, slowly.
  *
  * The place of step 1 is searched for between the place of the path and
- * sure_mm, the last place where all axes were where they were sent.  While an
- * axis was blocked, it did not move, and the path may have turned: so it is
- * looked for from moved_mm on, where it moved last.  An axis that the path only
- * leads away from there is not one that was blocked.  It is taken back by step
- * 2, but not farther than resync_max.
+ * sure_mm, the last place where all axes were where they were sent; a path that
+ * turns round passes a blocked axis, too, which is no such place.  While an
+ * axis was blocked, it did not move, and the path may have turned, even to and
+ * fro: so it is looked for from moved_mm on, where it moved last.  It was
+ * blocked in the direction in which it moved last.  So the place is one where
+ * the path, on its way there, led the axis on in this direction: farther back
+ * it leads away from what blocked the axis.  A motor that loses the pulses that
+ * it cannot go follows the path back; it was blocked in the direction in which
+ * pulses are missing, and the place may be in front of sure_mm.
+ *
+ * An axis that went on by itself was not blocked, nor was one that the path
+ * leads away from by more than max.  It is taken back by step 2, but not
+ * farther than max.
  *
  * Units: pulses of the drives; mm along the path.  Threads: RT-safe.
  */
@@ -49,22 +57,33 @@ struct resync {
 	bool is_off;			/* an axis is */
 	int32_t ran_on[INTERP_NAXES];	/* farther than max, by itself */
 	double sure_mm;
+	uint32_t adrift;		/* bit per axis: it was off, and did not
+					 * move since to where it was sent */
 	bool sure_beside;		/* ... was beside the path */
 	int32_t seen[INTERP_NAXES];	/* where each axis stands, to
 					 * NEAR_PULSES; */
 	bool unseen;			/* ... not known yet */
-	double moved_mm[INTERP_NAXES];	/* the place when it came there */
+	bool stood;			/* ... while it had no power */
+	double moved_mm[INTERP_NAXES];	/* the place when it came there, toward
+					 * where it was sent; */
+	int8_t moved_way[INTERP_NAXES];	/* ... its direction, +1, -1; 0: it has
+					 * not moved */
 	uint32_t moved_beside;		/* bit per axis: ... was beside */
+	uint32_t slips;			/* as struct io_inputs has it */
 	uint32_t held;			/* bit per axis that stays ... */
 	int32_t hold[INTERP_NAXES];	/* ... here */
 	double met_mm[INTERP_NAXES];	/* ... until the path is here */
 	bool walks;
 	/* The search: */
 	uint32_t seek, met;		/* bit per axis to be met, and met */
-	uint32_t near;			/* bit per axis: met in front of
-					 * moved_mm, and not left since */
-	uint32_t asked;			/* ... looked at behind it */
-	int64_t left[INTERP_NAXES];	/* to it, at the first of these */
+	uint32_t passed;		/* bit per axis: the path has it where
+					 * it stands, from met_mm on; in front
+					 * of that, beyond what blocked it */
+	uint32_t before;		/* ... the path has it before that */
+	uint32_t asked;			/* ... looked at behind moved_mm */
+	int way[INTERP_NAXES];		/* it was blocked in this direction */
+	int64_t left[INTERP_NAXES];	/* from the path to where it stands, as
+					 * it was asked first */
 	int toward;			/* +1 or -1, along the path */
 	double until_mm;
 	struct interp_cursor scout;
