@@ -186,8 +186,10 @@ int ctl_number(const struct ctl *c, const char *text, const char *wanted,
 
 int ctl_move(struct ctl *c)
 {
-	double way;
-	int rc = ctl_number(c, c->value, "-1 or +1", &way);
+	const bool front = strcmp(c->value, "front") == 0;
+	double way = front ? -2 : 2;
+	int rc = front || strcmp(c->value, "back") == 0 ? 0 :
+		 ctl_number(c, c->value, "-1, +1, front or back", &way);
 
 	return rc ? rc : ctl_say(c, &(struct talk_question) {
 		.verb = "move", .job = c->arg, .arg = way,

@@ -81,6 +81,8 @@ int ctl_doctor(struct ctl *c);
  */
 int ctl_pulses(const char *line);
 int ctl_queue(struct ctl *c);
+int ctl_clear(struct ctl *c);
+int ctl_totals(struct ctl *c);
 int ctl_show(struct ctl *c);
 int ctl_history(struct ctl *c);
 

@@ -6,6 +6,7 @@
  * stands in brackets.  Nothing is written before the last answer.
  */
 #include "ctl.h"
+#include "new_machine.h"
 
 #include "config.h"
 #include "names.h"
@@ -20,23 +21,8 @@
 #include <sysexits.h>
 #include <unistd.h>
 
-#define WORD_MAX	64
-#define AXES		"XYZABCUV"
-#define NAXES		8
-
-struct machine {
-	char name[WORD_MAX], kind[WORD_MAX], backend[WORD_MAX];
-	char axes[WORD_MAX], dialect[WORD_MAX], bus[WORD_MAX];
-	double from[NAXES], to[NAXES], pulse_um[NAXES], v_max[NAXES];
-	int step[NAXES], dir[NAXES];	/* gpio: lines; can402: step is the
-					 * node */
-	double increments[NAXES];	/* can402: of the drive, for a mm */
-	char holds[NAXES][WORD_MAX];	/* can402: without power */
-	bool over;			/* no more answers */
-};
-
 /* Return: false: the answers have ended. */
-static bool answer(struct machine *m, const char *question, const char *plain,
+bool new_machine_answer(struct machine *m, const char *question, const char *plain,
 		   char ret[WORD_MAX])
 {
 	char line[256];
@@ -63,14 +49,14 @@ static bool answer(struct machine *m, const char *question, const char *plain,
 }
 
 /* One of the words, which are divided by blanks. */
-static bool choose(struct machine *m, const char *question, const char *words,
+bool new_machine_choose(struct machine *m, const char *question, const char *words,
 		   char ret[WORD_MAX])
 {
 	char plain[WORD_MAX];
 	size_t n;
 
 	snprintf(plain, sizeof(plain), "%.*s", (int)strcspn(words, " "), words);
-	while (answer(m, question, plain, ret)) {
+	while (new_machine_answer(m, question, plain, ret)) {
 		const char *at = strchr(ret, ' ') ? NULL : words;
 
 		n = strlen(ret);
@@ -83,18 +69,12 @@ static bool choose(struct machine *m, const char *question, const char *words,
 	return false;
 }
 
-/* So many numbers, each within the range. */
-struct wanted {
-	int n;
-	double from, to;
-};
-
-static bool numbers(struct machine *m, const char *question, const char *plain,
+bool new_machine_numbers(struct machine *m, const char *question, const char *plain,
 		    const struct wanted *w, double *const *ret)
 {
 	char word[WORD_MAX], *end;
 
-	while (answer(m, question, plain, word)) {
+	while (new_machine_answer(m, question, plain, word)) {
 		const char *at = word;
 		int i;
 
@@ -117,7 +97,7 @@ static bool numbers(struct machine *m, const char *question, const char *plain,
 
 static bool ask_name(struct machine *m)
 {
-	while (answer(m, "name of the machine", "edm", m->name)) {
+	while (new_machine_answer(m, "name of the machine", "edm", m->name)) {
 		if (names_machine_ok(m->name))
 			return true;
 		fprintf(stderr, "%s\n", NAMES_MACHINE_WANTED);
@@ -147,7 +127,7 @@ static bool axes_fit(struct machine *m)
 
 static bool ask_axes(struct machine *m)
 {
-	while (answer(m, "axes", is_wire(m) ? "XYUV" : "XYZC", m->axes)) {
+	while (new_machine_answer(m, "axes", is_wire(m) ? "XYUV" : "XYZC", m->axes)) {
 		if (axes_fit(m))
 			return true;
 		fprintf(stderr, "each once, of X Y Z A B C U V; a %s machine "
@@ -172,7 +152,7 @@ static bool ask_axis(struct machine *m, char axis)
 
 	snprintf(q, sizeof(q), "%c: travel from and to, %s", axis, unit);
 	do {
-		if (!numbers(m, q, is_rotary(axis) ? "-360 360" : "-100 100",
+		if (!new_machine_numbers(m, q, is_rotary(axis) ? "-360 360" : "-100 100",
 			     &travel, (double *[]) { &m->from[i], &m->to[i] }))
 			return false;
 		if (!(m->from[i] < m->to[i]))
@@ -180,10 +160,10 @@ static bool ask_axis(struct machine *m, char axis)
 	} while (!(m->from[i] < m->to[i]));
 	snprintf(q, sizeof(q), "%c: one pulse, in thousandths of %s", axis,
 		 unit);
-	if (!numbers(m, q, "1", &pulse, (double *[]) { &m->pulse_um[i] }))
+	if (!new_machine_numbers(m, q, "1", &pulse, (double *[]) { &m->pulse_um[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: fastest, %s a second", axis, unit);
-	return numbers(m, q, strcmp(m->backend, "gpio") == 0 ? "5" : "10",
+	return new_machine_numbers(m, q, strcmp(m->backend, "gpio") == 0 ? "5" : "10",
 		       &fast, (double *[]) { &m->v_max[i] });
 }
 
@@ -196,7 +176,7 @@ static bool ask_gpio(struct machine *m, char axis)
 
 	snprintf(q, sizeof(q), "%c: lines of step and direction", axis);
 	snprintf(plain, sizeof(plain), "%d %d", 2 * i, 2 * i + 1);
-	if (!numbers(m, q, plain, &lines, (double *[]) { &step, &dir }))
+	if (!new_machine_numbers(m, q, plain, &lines, (double *[]) { &step, &dir }))
 		return false;
 	m->step[i] = (int)step;
 	m->dir[i] = (int)dir;
@@ -213,26 +193,26 @@ static bool ask_can(struct machine *m, char axis)
 
 	snprintf(q, sizeof(q), "%c: node of the drive", axis);
 	snprintf(plain, sizeof(plain), "%d", i + 1);
-	if (!numbers(m, q, plain, &nodes, (double *[]) { &node }))
+	if (!new_machine_numbers(m, q, plain, &nodes, (double *[]) { &node }))
 		return false;
 	m->step[i] = (int)node;
 	snprintf(q, sizeof(q), "%c: increments of the drive for a %s", axis,
 		 is_rotary(axis) ? "degree" : "mm");
-	if (!numbers(m, q, "10000", &all,
+	if (!new_machine_numbers(m, q, "10000", &all,
 		     (double *[]) { &m->increments[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: what holds it without power", axis);
-	return choose(m, q, axis == 'Z' ? "drive free none" :
+	return new_machine_choose(m, q, axis == 'Z' ? "drive free none" :
 		      "free drive none", m->holds[i]);
 }
 
 /* It becomes a value of the file as it is. */
-static bool bus_fits(const char *name)
+bool new_machine_is_word(const char *name)
 {
 	for (const char *at = name; *at; at++) {
-		if (isalnum((unsigned char)*at) || strchr("-_./", *at))
+		if (isalnum((unsigned char)*at) || strchr("-_./:!", *at))
 			continue;
-		fprintf(stderr, "letters, digits and - _ . / alone\n");
+		fprintf(stderr, "letters, digits and - _ . / : ! alone\n");
 		return false;
 	}
 	return true;
@@ -244,12 +224,12 @@ static bool ask_backend(struct machine *m)
 	const bool can = strcmp(m->backend, "can402") == 0;
 
 	do {
-		if (gpio && !answer(m, "the GPIO chip, as gpiodetect lists it",
+		if (gpio && !new_machine_answer(m, "the GPIO chip, as gpiodetect lists it",
 				    "gpiochip0", m->bus))
 			return false;
-		if (can && !answer(m, "the CAN interface", "can0", m->bus))
+		if (can && !new_machine_answer(m, "the CAN interface", "can0", m->bus))
 			return false;
-	} while ((gpio || can) && !bus_fits(m->bus));
+	} while ((gpio || can) && !new_machine_is_word(m->bus));
 	for (const char *at = m->axes; *at && (gpio || can); at++)
 		if (!(gpio ? ask_gpio(m, *at) : ask_can(m, *at)))
 			return false;
@@ -259,17 +239,17 @@ static bool ask_backend(struct machine *m)
 static bool ask_all(struct machine *m)
 {
 	if (!ask_name(m) ||
-	    !choose(m, "kind: sinker or wire", "sinker wire", m->kind) ||
-	    !choose(m, "what moves it: null (nothing yet), sim, gpio, can402",
+	    !new_machine_choose(m, "kind: sinker or wire", "sinker wire", m->kind) ||
+	    !new_machine_choose(m, "what moves it: null (nothing yet), sim, gpio, can402",
 		    "null sim gpio can402", m->backend) || !ask_axes(m))
 		return false;
 	for (const char *at = m->axes; *at; at++)
 		if (!ask_axis(m, *at))
 			return false;
 	return ask_backend(m) &&
-	       choose(m, "dialect of its programs (edmsim "
+	       new_machine_choose(m, "dialect of its programs (edmsim "
 		      "--document-dialects tells what they mean)",
-		      EDM_DIALECTS, m->dialect);
+		      EDM_DIALECTS, m->dialect) && new_machine_more(m);
 }
 
 /* -- The file -------------------------------------------------------------- */
@@ -291,6 +271,7 @@ static void put_axis(FILE *f, const struct machine *m, int i)
 		fprintf(f, "drive_increments = %.0f\ndrive_pulses = %.0f\n"
 			"brake = %s\n", round(m->increments[i] * 1e3),
 			round(1e6 / m->pulse_um[i]), m->holds[i]);
+	new_machine_put_axis(f, m, i);
 	fputc('\n', f);
 }
 
@@ -301,8 +282,9 @@ static void put_lines(FILE *f, const struct machine *m)
 		if (strchr(m->axes, AXES[i]))
 			fprintf(f, "step_%c = %d\ndir_%c = %d\n", AXES[i],
 				m->step[i], AXES[i], m->dir[i]);
+	new_machine_put_lines(f, m);
 	fprintf(f, "; no `spark` line yet: docs/gpio.md says what guards it "
-		"wants\n; and how the gap is read\n\n");
+		"wants\n\n");
 }
 
 static void put_bus(FILE *f, const struct machine *m)
@@ -311,8 +293,9 @@ static void put_bus(FILE *f, const struct machine *m)
 	for (int i = 0; i < NAXES; i++)
 		if (strchr(m->axes, AXES[i]))
 			fprintf(f, "node_%c = %d\n", AXES[i], m->step[i]);
-	fprintf(f, "gap_id = 0                  ; no gap yet: docs/can402.md\n"
-		"\n");
+	fprintf(f, "gap_id = %s\n\n", strcmp(m->gap, "can") == 0 ?
+		m->gap_at[0] : "0                  ; no gap yet: "
+			       "docs/can402.md");
 }
 
 static double slowest(const struct machine *m)
@@ -326,15 +309,10 @@ static double slowest(const struct machine *m)
 
 static void put_process(FILE *f, const struct machine *m)
 {
-	if (is_wire(m))
-		fprintf(f, "[gap]\nprocess = wire\n\n");
-	fprintf(f, "[jump]\nv_max_mm_s = %.10g\n\n", slowest(m));
-	if (is_wire(m) && strchr(m->axes, 'U') && strchr(m->axes, 'V'))
-		fprintf(f, "[wire]\nguides = relative           ; U V ride on "
-			"X Y\nz_lower_mm = -20            ; heights of both "
-			"guides from the table:\nz_upper_mm = 80             "
-			"; measure them\nz_second_mm = 40            ; top of "
-			"the work\n\n");
+	fprintf(f, "[gap]\n%s", is_wire(m) ? "process = wire\n" : "");
+	if (*m->gap && strcmp(m->gap, "none") != 0)
+		fprintf(f, "source = %s\n", m->gap);
+	fprintf(f, "\n[jump]\nv_max_mm_s = %.10g\n\n", slowest(m));
 }
 
 static void put_all(FILE *f, const struct machine *m)
@@ -356,6 +334,7 @@ static void put_all(FILE *f, const struct machine *m)
 	if (strcmp(m->backend, "can402") == 0)
 		put_bus(f, m);
 	put_process(f, m);
+	new_machine_put_more(f, m);
 	fprintf(f, "[nc]\ndialect = %s\n", m->dialect);
 }
 

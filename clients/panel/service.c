@@ -291,6 +291,9 @@ static void take_time(struct service_status *s, const struct talk_status *t)
 	s->eta_max_s = t->eta_max_s;
 	s->eta_factor = t->eta_factor;
 	s->end_s = t->end_s;
+	s->queue_s = t->queue_s;
+	s->queue_end_s = t->queue_end_s;
+	s->queue_untold = t->queue_untold;
 	snprintf(s->eta_by, sizeof(s->eta_by), "%s", t->eta_by);
 	snprintf(s->eta_condition, sizeof(s->eta_condition), "%s",
 		 t->eta_condition);

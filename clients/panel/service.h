@@ -39,6 +39,8 @@ struct service_status {
 	double lean_deg;		/* of a wire */
 	double eta_s;			/* -1: there is no estimate */
 	double eta_min_s, eta_max_s, eta_factor, end_s, progress;
+	double queue_s, queue_end_s;
+	int queue_untold;
 	char eta_by[SERVICE_WORD_MAX], eta_condition[SERVICE_WORD_MAX];
 };
 

@@ -215,6 +215,10 @@ static void add_time(json_t *o, const struct service_status *s)
 	json_object_set_new(o, "etaFactor",
 			    json_real(round(s->eta_factor * 100) / 100));
 	json_object_set_new(o, "end", json_real(round(s->end_s / 10) * 10));
+	json_object_set_new(o, "queueS", json_real(round(s->queue_s)));
+	json_object_set_new(o, "queueUntold", json_integer(s->queue_untold));
+	json_object_set_new(o, "queueEnd",
+			    json_real(round(s->queue_end_s / 60) * 60));
 	json_object_set_new(o, "progress",
 			    json_real(round(s->progress * 1000) / 1000));
 }

@@ -420,6 +420,8 @@ static const struct verb verbs[] = {
 	{ "queue",    ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
 	{ "show",     ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
 	{ "past",     ROLE_VIEWER,   run_ask, "history", VERBS_ASK, 0 },
+	{ "totals",   ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, NUMBER },
+	{ "trail",    ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
 	{ "alarms",   ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
 	{ "history",  ROLE_VIEWER,   run_history, NULL, VERBS_ASK, 0 },
 	{ "latency",  ROLE_VIEWER,   run_latency, NULL, VERBS_ASK, 0 },

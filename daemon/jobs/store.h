@@ -98,7 +98,7 @@ struct store_change {
 };
 
 enum store_list { STORE_QUEUE, STORE_SHOW, STORE_HISTORY, STORE_ALARMS,
-		  STORE_TRAIL, STORE_EVENTS };
+		  STORE_TRAIL, STORE_EVENTS, STORE_DAYS, STORE_MONTHS };
 
 /** store_state_name() - "queued", ... */
 const char *store_state_name(enum job_state s);
@@ -241,5 +241,17 @@ int store_set_number(struct store *s, const char *key, int64_t value);
  */
 char *store_json(struct store *s, enum store_list what, const char *id,
 		 int rows);
+
+/* A list that is asked for: behind job `job`, or from its beginning if that is
+ * "".  With `words` only jobs in whose name, outcome, day and electrodes (T3)
+ * all of them are; STORE_DAYS and STORE_MONTHS sum those up. */
+struct store_asked {
+	enum store_list what;
+	const char *job, *words;
+	int rows;
+};
+
+/** store_look() - as store_json(), for lists of jobs. */
+char *store_look(struct store *s, const struct store_asked *a);
 
 #endif /* JOBS_STORE_H */

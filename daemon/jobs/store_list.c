@@ -69,6 +69,26 @@
 /* The place of a job in a list; a smaller number is earlier. */
 #define IN_HISTORY	"-ended_us, -n"
 
+/* What is looked for, word by word, in a job that has ended: name, outcome,
+ * day, electrodes.  Without words all of them are meant. */
+#define DAY(FORM)	"strftime('" FORM "', ended_us / 1e6, 'unixepoch', " \
+			"'localtime')"
+#define WORDS		"'[\"' || replace(substr(json_quote(?3), 2, length(" \
+			"json_quote(?3)) - 2), ' ', '\",\"') || '\"]'"
+#define HAS_WORDS	"(?3='' OR NOT EXISTS (SELECT 1 FROM json_each(" WORDS ") " \
+			"WHERE instr(lower(name || ' ' || state || ' ' || " \
+			DAY("%Y-%m-%d") " || coalesce((SELECT group_concat(" \
+			"' T' || electrode, '') FROM worn WHERE worn.job=" \
+			"job.n), '')), lower(value))=0))"
+
+/* So much of the jobs of a day or a month. */
+#define TOTALS_SQL(FORM) \
+	"SELECT json_object('time', " DAY(FORM) ", 'jobs', count(*), 'done', " \
+	"sum(state='done'), 'job_s', total(job_s), 'erode_s', " \
+	"total(erode_s), 'energy_j', sum(energy_j)) FROM job WHERE state IN (" \
+	STORE_ENDED ") AND " HAS_WORDS " AND ?2='' GROUP BY " DAY(FORM) \
+	" ORDER BY 1 DESC LIMIT ?1"
+
 /* SQLite finds a page by the index of its order, if it is told where the page
  * begins, and that the index of the states is of no use (+).  Of the queue only
  * those that wait are in that index, so that a job that runs does not change
@@ -80,7 +100,7 @@
 			" FROM job WHERE id=?2), -9e18)"
 #define HAS_ENDED	"+state IN ('done', 'stopped', 'fault') AND " \
 			"-ended_us >= coalesce((SELECT -ended_us FROM job " \
-			"WHERE id=?2), -9e18)"
+			"WHERE id=?2), -9e18) AND " HAS_WORDS
 
 /* Which jobs, of those after job ?2 if one is given: as many as asked for. */
 #define SOME(JOB, WHICH, PLACE) \
@@ -94,10 +114,13 @@
 	"SELECT " JSON " FROM job JOIN (" SOME ") ON n=m ORDER BY " \
 	PLACE " LIMIT ?1"
 
-static sqlite3_stmt *list_query(struct store *s, enum store_list what,
-				const char *id, int rows, int *ret_err)
+static sqlite3_stmt *list_query(struct store *s,
+				const struct store_asked *a, int rows,
+				int *ret_err)
 {
-	switch (what) {
+	const char *id = a->job, *words = a->words;
+
+	switch (a->what) {
 	case STORE_SHOW:
 		return store_ask(s, ret_err, "SELECT "
 				 JOB_JSON(SUMS_JSON CHANGES_JSON
@@ -129,12 +152,18 @@ static sqlite3_stmt *list_query(struct store *s, enum store_list what,
 	case STORE_TRAIL:
 		return store_ask(s, ret_err, "SELECT trail FROM trail JOIN job "
 				 "USING(n) WHERE id=?", "s", id);
+	case STORE_DAYS:
+		return store_ask(s, ret_err, TOTALS_SQL("%Y-%m-%d"), "iss",
+				 (int64_t)rows, id, words);
+	case STORE_MONTHS:
+		return store_ask(s, ret_err, TOTALS_SQL("%Y-%m"), "iss",
+				 (int64_t)rows, id, words);
 	case STORE_HISTORY:
 		break;
 	}
 	return store_ask(s, ret_err, JOBS_SQL(JOB_JSON(SUMS_JSON),
 			 SOME("job", HAS_ENDED, IN_HISTORY), IN_HISTORY),
-			 "is", (int64_t)rows, id);
+			 "iss", (int64_t)rows, id, words);
 }
 
 /*
@@ -178,7 +207,9 @@ static char *row_text(sqlite3_stmt *q)
 static char *trail(struct store *s, const char *id)
 {
 	int err;
-	sqlite3_stmt *q = list_query(s, STORE_TRAIL, id, 0, &err);
+	sqlite3_stmt *q = list_query(s, &(struct store_asked) {
+		.what = STORE_TRAIL, .job = id,
+	}, 0, &err);
 	char *text = q ? row_text(q) : err == -ENOENT ? strdup("{}") : NULL;
 
 	sqlite3_finalize(q);
@@ -190,7 +221,9 @@ static char *one(struct store *s, const char *id)
 {
 	for (int rows = LIST_MAX; rows > 0; rows -= rows / 8 + 1) {
 		int err;
-		sqlite3_stmt *q = list_query(s, STORE_SHOW, id, rows, &err);
+		sqlite3_stmt *q = list_query(s, &(struct store_asked) {
+			.what = STORE_SHOW, .job = id,
+		}, rows, &err);
 		char *text = q ? row_text(q) : NULL;
 
 		sqlite3_finalize(q);
@@ -224,11 +257,10 @@ static int put_rows(FILE *f, sqlite3_stmt *q)
 	return rc;
 }
 
-static char *list_text(struct store *s, enum store_list what, const char *id,
-		       int rows)
+static char *list_text(struct store *s, const struct store_asked *a, int rows)
 {
 	int err = 0, rc = SQLITE_NOMEM;
-	sqlite3_stmt *q = list_query(s, what, id, rows, &err);
+	sqlite3_stmt *q = list_query(s, a, rows, &err);
 	char *text = NULL;
 	size_t size;
 	FILE *f = open_memstream(&text, &size);
@@ -246,18 +278,21 @@ static char *list_text(struct store *s, enum store_list what, const char *id,
 	return NULL;
 }
 
+char *store_look(struct store *s, const struct store_asked *a)
+{
+	const int most = a->what == STORE_QUEUE ? QUEUE_MAX : LIST_MAX;
+	const int rows = a->rows > 0 && a->rows < most ? a->rows : most;
+	char *text = list_text(s, a, rows);
+
+	return text ? text : list_text(s, a, rows);
+}
+
 char *store_json(struct store *s, enum store_list what, const char *id,
 		 int rows)
 {
-	const int most = what == STORE_QUEUE ? QUEUE_MAX : LIST_MAX;
-	char *text;
-
 	if (what == STORE_SHOW)
 		return one(s, id);
 	if (what == STORE_TRAIL)
 		return trail(s, id);
-	if (rows <= 0 || rows > most)
-		rows = most;
-	text = list_text(s, what, id, rows);
-	return text ? text : list_text(s, what, id, rows);
+	return store_look(s, &(struct store_asked) { what, id, "", rows });
 }

@@ -133,6 +133,7 @@ void store_close(struct store *s)
 	if (s->kept.n)
 		log_error("store: %u entries could not be stored: %s",
 			  s->kept.n, store_why(s));
+	store_lines_fini(&s->lines);
 	store_writes_free(&s->group);
 	store_writes_free(&s->kept);
 	sqlite3_close_v2(s->db);

@@ -25,6 +25,7 @@
 #define JOBS_STORE_SQL_H
 
 #include "store.h"
+#include "store_text.h"
 
 #include <sqlite3.h>
 #include <stdarg.h>
@@ -69,7 +70,15 @@ struct store_writes {
 	uint32_t n;
 };
 
+/* Where lines of the long text that was asked for last begin. */
+struct store_lines {
+	char path[STORE_TEXT_PATH_MAX];	/* "": none was */
+	int64_t *at;
+	size_t n, room;
+};
+
 struct store {
+	struct store_lines lines;
 	sqlite3 *db;			/* the one in force */
 	bool in_memory;			/* what is written stays there */
 	bool over;			/* in a transaction of `db`; else that
@@ -134,6 +143,9 @@ void store_degrade(struct store *s, int err);
 /** store_over_failed() - the transaction over a full disk is lost by @rc of
  *  SQLite; what was kept is written anew, over the disk or over a copy. */
 void store_over_failed(struct store *s, int rc);
+
+/** store_lines_fini() - forget them. */
+void store_lines_fini(struct store_lines *l);
 
 /** store_undo() - drop an open transaction and what is in it. */
 void store_undo(struct store *s);

@@ -28,11 +28,13 @@ struct store;
  *  Return: 0; -ENOENT if there is none; -EIO. */
 int store_move(struct store *s, uint32_t n, bool ahead);
 
+/** store_move_all() - the same, before or behind all of those that wait. */
+int store_move_all(struct store *s, uint32_t n, bool ahead);
+
 /**
  * store_lines() - STORE_LINES lines of job @n from line @first on, as JSON:
  * an object of `first` and `text`.  Fewer if they are long.
- * Return: to be freed; NULL: no memory, no such line, or a text of more than
- * 4 MiB.
+ * Return: to be freed; NULL: no memory, or no such line.
  */
 char *store_lines(struct store *s, uint32_t n, uint32_t first);
 

@@ -100,6 +100,8 @@ void verbs_events(struct jobs *j, const struct verb *v,
 		  const struct jobs_lcm_command *c);
 void verbs_alarms(struct jobs *j, const struct verb *v,
 		  const struct jobs_lcm_command *c);
+void verbs_totals(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c);
 void verbs_history(struct jobs *j, const struct verb *v,
 		   const struct jobs_lcm_command *c);
 

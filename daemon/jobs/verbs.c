@@ -741,6 +741,7 @@ static const struct verb verbs[] = {
 	{ "why", ROLE_VIEWER, VERB_ASKS, verbs_why, VERB_OWN, "" },
 	{ "values", ROLE_VIEWER, VERB_ASKS, verbs_values, VERB_OWN, "" },
 	{ "trail", ROLE_VIEWER, VERB_ASKS, verbs_trail, VERB_OWN, "" },
+	{ "totals", ROLE_VIEWER, VERB_ASKS, verbs_totals, VERB_OWN, "" },
 	{ "history", ROLE_VIEWER, VERB_ASKS, verbs_history, VERB_OWN, "" },
 	{ "electrodes", ROLE_VIEWER, VERB_ASKS, electrode_list, VERB_OWN, "" },
 	{ "electrode-add", ROLE_OPERATOR, VERB_ACTS, electrode_add, VERB_OWN,

@@ -8,10 +8,13 @@
 
 #include <errno.h>
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
+
+#define MOVE_ALL	2.0		/* - or +: before or behind all */
 
 /* On a disk that takes nothing a job is removed from memory only. */
 static void answer_removed(struct jobs *j, const struct jobs_lcm_command *c)
@@ -78,9 +81,9 @@ void verbs_move(struct jobs *j, const struct verb *v,
 	int err;
 
 	(void)v;
-	if (c->arg != 1 && c->arg != -1) {
+	if (fabs(c->arg) != 1 && fabs(c->arg) != MOVE_ALL) {
 		verbs_answer(j, c, EX_DATAERR, "no such way; -1 is ahead, 1 "
-			     "is back");
+			     "is back, -2 before and 2 behind all that wait");
 	} else if (store_find(j->store, c->job, &job) < 0) {
 		verbs_answer(j, c, EX_NOINPUT,
 			     "no such job; edmctl queue lists them");
@@ -88,7 +91,9 @@ void verbs_move(struct jobs *j, const struct verb *v,
 		verbs_answer(j, c, REFUSED,
 			     "only a job that waits in the queue can be moved");
 	} else {
-		err = store_move(j->store, job.n, c->arg < 0);
+		err = fabs(c->arg) == MOVE_ALL ?
+		      store_move_all(j->store, job.n, c->arg < 0) :
+		      store_move(j->store, job.n, c->arg < 0);
 		verbs_answer(j, c, err == 0 ? 0 : err == -ENOENT ? REFUSED :
 			     EX_IOERR, err == 0 ? "moved" : err != -ENOENT ?
 			     "the store failed" : c->arg < 0 ?
@@ -114,8 +119,7 @@ void verbs_text(struct jobs *j, const struct verb *v,
 	a.body = body;
 	if (!body) {
 		a.code = EX_NOINPUT;
-		a.reason = "no such line of such a job, or its "
-			   "text is longer than 4 MiB; 1 is the first";
+		a.reason = "no such line of such a job; 1 is the first";
 	}
 	jobs_answer(j, &a);
 	free(body);
@@ -168,7 +172,10 @@ static void answer_list(struct jobs *j, const struct jobs_lcm_command *c,
 	const bool known = what == STORE_ALARMS || what == STORE_EVENTS ||
 			   (!*c->job && !one) ||
 			   store_find(j->store, c->job, &before) != -ENOENT;
-	char *body = known ? store_json(j->store, what, c->job, rows) : NULL;
+	char *body = !known ? NULL : one ?
+		     store_json(j->store, what, c->job, rows) :
+		     store_look(j->store, &(struct store_asked) {
+			what, c->job, c->text, rows });
 	struct jobs_lcm_ack a = {
 		.key = c->key, .client = c->client, .seq = c->seq,
 		.reason = "done",
@@ -223,6 +230,17 @@ void verbs_events(struct jobs *j, const struct verb *v,
 {
 	(void)v;
 	answer_list(j, c, STORE_EVENTS);
+}
+
+void verbs_totals(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c)
+{
+	struct jobs_lcm_command all = *c;
+
+	(void)v;
+	all.arg = 0;
+	all.job = "";
+	answer_list(j, &all, c->arg > 0 ? STORE_MONTHS : STORE_DAYS);
 }
 
 void verbs_history(struct jobs *j, const struct verb *v,

@@ -190,26 +190,50 @@ def test_answers_are_judged_and_asked_for_again(tmp_path):
         "a b", 400 * "m", "m", "lathe", "sinker wire", "sinker", "pneumatic", "gpio", "XY", "XXZ", "xz",
         "10", "5 -5", "-5 5 7", "-5 5", "0", "2", "fast", "2.5",
         "-20 -1", "1", "4", "chip ; 9", "chip9", "1", "1 x", "3 4", "5 6", "klingon",
-        "linuxcnc"])
+        "linuxcnc", "magic", "switch", "up", "-", "-5", "11", "!12"] + 30 * [""])
     assert p.returncode == 0, p.stderr
     text = path.read_text()
     for said in ("1 to 31 of A-Z", "one of sinker wire", "one of null sim",
                  "a sinker machine has Z", "the lower one first",
                  "2 numbers", "one of generic linuxcnc",
-                 "letters, digits and"):
+                 "letters, digits and", "one of none switch", "one of - +"):
         assert said in p.stderr, said
     assert "[axis.X]\npulse_mm = 0.002\ntravel_min_mm = -5\n" in text
     assert "[axis.Z]\npulse_mm = 0.001\ntravel_min_mm = -20\n" \
         "travel_max_mm = -1\n" in text and "start_mm = -10.5" in text
+    assert "home_method = switch\nhome_at_mm = -5\nhome_dir = -" in text
+    assert "home_X = 11\nlimit_X = !12\n" in text
     assert "step_Z = 5\ndir_Z = 6" in text and "chip = chip9" in text
     done("--machine", path, "--check", text="G21 G90 G0 X5.\nM2\n")
+
+
+def test_gap_generator_joints_and_wire_are_asked_for(tmp_path):
+    path = tmp_path / "new.ini"
+    axis = ["", "", ""]
+    p = new_machine(path, [
+        "m", "sinker", "can402", "ZC"] + 2 * axis + ["can1", "1", "", "", "2",
+        "", "", "", "absolute", "7", "", "389", "modbus", "192.168.1.5:502",
+        "C(0 0 -120) X Y Z"])
+    assert p.returncode == 0, p.stderr
+    text = path.read_text()
+    for part in ("home_method = absolute\nhome_at_mm = 7\n",
+                 "gap_id = 389\n", "source = can\n",
+                 "interface = modbus\nmodbus = 192.168.1.5:502\n",
+                 "chain = C(0 0 -120) X Y Z\n"):
+        assert part in text, part
+    path.unlink()
+    p = new_machine(path, ["m", "wire", "sim", ""] + 4 * axis + [""]
+                    + 4 * [""] + ["-30 90 25"])
+    assert p.returncode == 0, p.stderr
+    assert "z_lower_mm = -30\nz_upper_mm = 90\nz_second_mm = 25" in \
+        path.read_text()
 
 
 def test_what_edmd_refuses_is_told_by_who_writes_it(tmp_path):
     """Answers that are good one by one."""
     path = tmp_path / "new.ini"
     p = new_machine(path, ["m", "sinker", "gpio", "Z"] + 4 * [""] + ["3 3"]
-                    + 9 * [""])
+                    + 30 * [""])
     assert p.returncode == 78
     assert "new.ini:" in p.stderr and "are both line 3" in p.stderr
     assert "mend that line" in p.stderr and path.exists()
@@ -228,7 +252,7 @@ def test_random_answers_become_files_that_edmd_takes_or_are_told(tmp_path):
             answers += [draw.choice(["", "-1 1", "5 20", "-100000 100000"]),
                         draw.choice(["", "0.001", "1000", "2.5"]),
                         draw.choice(["", "0.001", "100000", "1000"])]
-        p = new_machine(path, answers + 30 * [""])
+        p = new_machine(path, answers + 60 * [""])
         good = subprocess.run(
             [PROGRAM, "--machine", path, "--print-config"],
             capture_output=True, timeout=HANGS_S).returncode == 0

@@ -38,7 +38,7 @@ def test_what_cannot_be_moved_is_refused_in_words(machine):
     c.status_where(lambda s: s.job_state == "ready")
     assert c.ask("move", "a", -1).code == 1
     assert c.ask("move", "none", -1).code == 66
-    assert c.ask("move", "a", 2).code == 65
+    assert c.ask("move", "a", 3).code == 65
     assert c.ask("move", "a", float("nan")).code == 65
 
 
@@ -71,7 +71,7 @@ def test_a_queue_longer_than_an_answer_is_listed_whole(machine):
     assert len(names(machine)) < len(wanted)
     r = machine.ctl("queue", "--json")
     assert [j["job"] for j in json.loads(r.stdout)] == wanted
-    assert len(machine.ctl("queue").stdout.splitlines()) == 1 + len(wanted)
+    assert len(machine.ctl("queue").stdout.splitlines()) == 2 + len(wanted)
     # From behind any job; a job that never was is refused.
     after = json.loads(c.ask("queue", wanted[290]).body)
     assert [j["job"] for j in after] == wanted[291:]

@@ -242,6 +242,28 @@ static void a_move_passes_what_does_not_wait(void **state)
 	store_close(s);
 }
 
+static void a_job_goes_before_or_behind_all_that_wait(void **state)
+{
+	struct store *s = open_store();
+	uint32_t n[5];
+
+	(void)state;
+	for (size_t i = 0; i < 5; i++)
+		n[i] = add(s, (const char *[]){ "a", "b", "c", "d", "e" }[i]);
+	assert_int_equal(store_set_loaded(s, n[0], true), 0);
+	assert_int_equal(store_set_state(s, n[0], JOB_READY), 0);
+	assert_int_equal(store_set_state(s, n[2], JOB_INTERRUPTED), 0);
+	assert_int_equal(store_move_all(s, n[4], true), 0);
+	assert_queue(s, "aecbd");
+	assert_int_equal(store_move_all(s, n[4], false), 0);
+	assert_queue(s, "abcde");
+	/* The next one comes behind it all the same. */
+	assert_int_equal(store_move_all(s, n[1], false), 0);
+	add(s, "f");
+	assert_queue(s, "adcebf");
+	store_close(s);
+}
+
 static int64_t number(struct store *s, const char *sql)
 {
 	sqlite3_stmt *q = NULL;
@@ -392,6 +414,7 @@ int main(void)
 #define T(f)	cmocka_unit_test_setup_teardown(f, folder_make, folder_remove)
 		T(what_is_done_to_one_job_costs_the_same_in_a_long_queue),
 		T(a_move_passes_what_does_not_wait),
+		T(a_job_goes_before_or_behind_all_that_wait),
 		T(an_event_without_a_job_is_not_kept_for_ever),
 		T(the_counts_follow_the_jobs),
 		T(all_is_taken_into_memory_by_tables),

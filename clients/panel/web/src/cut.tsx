@@ -11,6 +11,7 @@ import { useLine } from "./lines";
 import { Card, Choice, Key, NumberField, PressKey, Sheet, act } from "./parts";
 import { WorkChoice, useWork } from "./offsets";
 import { PathView } from "./pathview";
+import { TextSheet } from "./textview";
 import { useAsk } from "./use";
 import { ValueSheet, ValuesSheet } from "./values";
 import { t } from "./words";
@@ -194,7 +195,7 @@ export function Cut(): JSX.Element {
 	const s = link.state;
 	const shown = s.program > 0 && s.loaded;
 	const line = useLine(shown ? s.job : "", s.line);
-	const foot = shown ? <div class="progress"><p><code title={line}>{line}</code><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm{"\u2002"}{number(Math.max(0, s.length - s.far), 2)} {t("cut.togo")}</span></p>
+	const foot = shown ? <div class="progress"><p><button type="button" class="codekey" title={line} onClick={() => set("text")}><code>{line}</code></button><span>{number(s.far, 2)} {t("of")} {number(s.length, 2)} mm{"\u2002"}{number(Math.max(0, s.length - s.far), 2)} {t("cut.togo")}</span></p>
 		<div class="bar"><i class="done" style={{ width: `${Math.min(100, s.progress * 100)}%` }} /></div></div> : null;
 	return <>
 		<div class="cut-grid">
@@ -208,8 +209,9 @@ export function Cut(): JSX.Element {
 		{open === "past" && <Past onClose={() => set("")} />}
 		{open === "retract" && <RetractSheet onClose={() => set("")} />}
 		{open === "%" && <OverrideSheet onClose={() => set("")} />}
+		{open === "text" && <TextSheet job={s.job} lines={s.lines} at={s.line} onClose={() => set("")} />}
 		{open === "*" && <ValuesSheet onClose={() => set("")} />}
-		{open && !["past", "retract", "%", "*"].includes(open) && <ValueSheet names={open.split(" ")} onClose={() => set("")} onMore={() => set("*")} />}
+		{open && !["past", "retract", "%", "*", "text"].includes(open) && <ValueSheet names={open.split(" ")} onClose={() => set("")} onMore={() => set("*")} />}
 	</>;
 }
 

@@ -3,21 +3,23 @@
 // Programs: drop one, check it, mend it where it stands, send it; the queue and
 // what has been.
 import type { JSX } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { whyNot } from "./can";
-import { duration, moment, number } from "./format";
+import { clock, duration, moment, number } from "./format";
 import { table } from "./history";
 import type { Came, Fault, Used } from "./history";
 import { link } from "./link";
 import { fitName, ownLines, unitOf } from "./names";
-import { Card, Key, NumberField, PressKey, Sheet, act } from "./parts";
+import { Card, Choice, Key, NumberField, PressKey, Sheet, act } from "./parts";
 import { PathView } from "./pathview";
+import { Picture } from "./picture";
+import { TextSheet } from "./textview";
 import { save, say, useAsk, usePages } from "./use";
 import { faultWords, jobWord, t } from "./words";
 
 interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
 interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string; line: string }
-interface Job { electrodes?: Used[]; n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; jumps: number; retracts: number; shorts: number; erode_s?: number | null; arcs?: number | null; energy_j?: number | null; conditions?: Came[]; faults?: Fault[]; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
+interface Job { electrodes?: Used[]; n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; forecast_s?: number | null; jumps: number; retracts: number; shorts: number; erode_s?: number | null; arcs?: number | null; energy_j?: number | null; conditions?: Came[]; faults?: Fault[]; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
 
 const EDITOR_MAX = 2 << 20, FILE_MAX = 64 << 20;
 
@@ -119,9 +121,9 @@ function Editor(p: { draft: Draft; error: Checked | null }): JSX.Element {
 		a.scrollTop = Math.max(0, (e.line - 4) * 22);
 	};
 	useEffect(goTo, [p.error]);
-	const many = Math.min(lines.length, 60000);
-	return <div class="editor"><div class="gutter" ref={gutter} aria-hidden="true">{Array.from({ length: many }, (_, i) =>
-		<i class={p.error && p.error.line === i + 1 ? "bad" : ""}>{i + 1}</i>)}</div>
+	const many = lines.length, numbers = useMemo(() => Array.from({ length: many }, (_, i) => i + 1).join("\n"), [many]);
+	return <div class="editor"><div class="gutter" ref={gutter} aria-hidden="true"><pre>{numbers}</pre>
+		{p.error && p.error.line > 0 && <i class="bad" style={{ top: `${(p.error.line - 1) * 22 + 8}px` }}>{p.error.line}</i>}</div>
 		<textarea ref={area} id="editor" spellcheck={false} autocapitalize="off" wrap="off" aria-label={t("jobs.editor")} value={p.draft.text}
 			onScroll={(e) => { if (gutter.current) gutter.current.scrollTop = e.currentTarget.scrollTop; }}
 			onInput={(e) => { turn++; put({ ...p.draft, text: e.currentTarget.value, checked: null, busy: "" }); }} /></div>;
@@ -176,11 +178,15 @@ function Sums(p: { job: Job }): JSX.Element {
 
 function Details(p: { id: string; name: string; onClose: () => void }): JSX.Element {
 	const [j] = useAsk<Job>("show", { job: p.id });
+	const [reads, read] = useState(false);
 	return <Sheet title={t("jobs.details", { name: p.name })} onClose={p.onClose} wide>{j && <>
 		<dl class="facts"><dt>{t("jobs.state")}</dt><dd>{jobWord(j.state)}</dd>{j.reason && <><dt>{t("jobs.reason")}</dt><dd>{j.reason}</dd></>}
 			<dt>{t("jobs.time")}</dt><dd>{duration(j.job_s)}</dd><dt>{t("jobs.length")}</dt><dd>{number(j.path_mm ?? 0, 3)} {t("of")} {number(j.length_mm ?? 0, 3)} mm</dd>
 			{link.hello?.process !== 1 && <><dt>{t("jobs.depth")}</dt><dd>{number(j.depth_mm ?? 0, 3)} mm</dd><dt>{t("cut.jumps")}</dt><dd>{j.jumps ?? 0}</dd></>}<dt>{t("cut.retracts")}</dt><dd>{j.retracts ?? 0}</dd><dt>{t("cut.shorts")}</dt><dd>{j.shorts ?? 0}</dd>
 			<dt>{t("jobs.arcs")}</dt><dd>{j.arcs ?? "\u2013"}</dd><dt>{t("jobs.energy")}</dt><dd>{energy(j.energy_j)}</dd></dl>
+		<Picture job={p.id} size={220} />
+		<div class="keys"><Key id="jobtext" onPress={() => read(true)}>{t("jobs.text")}</Key></div>
+		{reads && <TextSheet job={p.id} lines={j.lines} at={1} onClose={() => read(false)} />}
 		<Sums job={j} />
 		<h3>{t("jobs.changes")}</h3>
 		{(j.changes ?? []).length === 0 ? <p class="calm">{t("jobs.nochanges")}</p> : <div class="scroll"><table class="list"><tbody>{j.changes?.map((c) =>
@@ -199,32 +205,81 @@ function ResumeSheet(p: { job: Job; onClose: () => void }): JSX.Element {
 	</Sheet>;
 }
 
+/* As a time, or why there is none yet. */
+function takes(j: Job): string {
+	const s = j.forecast_s;
+	return j.state === "running" ? "" : typeof s !== "number" ? "\u2026" : s < 0 ? "?" : duration(s);
+}
+
+const WAYS = [
+	{ arg: -2, sign: "\u21e7", word: "jobs.front" }, { arg: -1, sign: "\u2191", word: "jobs.ahead" },
+	{ arg: 1, sign: "\u2193", word: "jobs.behind" }, { arg: 2, sign: "\u21e9", word: "jobs.back" },
+] as const;
+
+/* Page by page: what is gone is on none any more. */
+async function clearQueue(): Promise<void> {
+	for (;;) {
+		const a = await link.ask<Job[]>("queue");
+		const waits = a.code === 0 ? a.body.filter((j) => j.state === "queued") : [];
+		if (waits.length === 0) return;
+		for (const j of waits) if (!await act("remove", { job: j.job })) return;
+	}
+}
+
 function Queue(p: { open: (j: Job) => void }): JSX.Element {
 	const s = link.state;
 	const [resumed, resume] = useState<Job | null>(null);
 	const { rows, refused, again, next } = usePages<Job>("queue", { turn: `${s.job}${s.jobState}${s.queue}` }, 3000);
-	return <Card title={t("jobs.queue")}>{refused && <p class="note">{refused}</p>}
+	const waiting = (rows ?? []).filter((o) => o.state === "queued").length;
+	const clear = waiting > 1 ? <PressKey id="queueclear" class="small quiet" why={whyNot("send")} onPress={() => void clearQueue().then(again)}>{t("jobs.clear")}</PressKey> : undefined;
+	return <Card title={t("jobs.queue")} right={clear}>{refused && <p class="note">{refused}</p>}
 		{rows && rows.length === 0 && <p class="calm">{t("jobs.empty")}</p>}
-		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b><span>{jobWord(j.state)}{j.hold && j.state !== "running" ? `, ${t("jobs.waits")}` : ""}</span></button>
-			{j.state === "queued" && (rows ?? []).filter((o) => o.state === "queued").length > 1 && [-1, 1].map((way) =>
-				<Key class="small quiet" label={t(way < 0 ? "jobs.ahead" : "jobs.behind", { name: j.name })} why={whyNot("send")} onPress={() => void act("move", { job: j.job, arg: way }).then(again)}>{way < 0 ? "\u2191" : "\u2193"}</Key>)}
+		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b><span>{jobWord(j.state)}{j.hold && j.state !== "running" ? `, ${t("jobs.waits")}` : ""}</span><span class="n">{takes(j)}</span></button>
+			{j.state === "queued" && waiting > 1 && WAYS.map((w) =>
+				<Key class="small quiet" label={t(w.word, { name: j.name })} why={whyNot("send")} onPress={() => void act("move", { job: j.job, arg: w.arg }).then(again)}>{w.sign}</Key>)}
 			{j.state === "interrupted" && <Key class="small" why={whyNot("send")} onPress={() => resume(j)}>{t("jobs.resume")}</Key>}
 			{["queued", "ready", "interrupted"].includes(j.state) && <Key class="small quiet" why={whyNot("send")} onPress={() => void act("remove", { job: j.job }).then(again)}>{t("remove")}</Key>}</li>)}</ul>
+		{s.queueS > 0 && <p class="timenote" id="queuetotal">{t("jobs.total", { time: duration(s.queueS + Math.max(0, s.eta)), at: s.queueEnd * 1000 - Date.now() > 20 * 3600e3 ? moment(s.queueEnd * 1000) : clock(s.queueEnd * 1000) })}{s.queueUntold > 0 && ` ${t("jobs.untold", { n: s.queueUntold })}`}</p>}
 		{next && <Key class="quiet" onPress={next}>{t("jobs.more")}</Key>}
 		{resumed && <ResumeSheet job={resumed} onClose={() => { resume(null); again(); }} />}
 	</Card>;
 }
 
+const OUTCOMES = ["done", "stopped", "fault"] as const;
+
+/* Words that are all in name, outcome, day, electrode; and what that sums to. */
+function Search(p: { words: string; look: (w: string) => void }): JSX.Element {
+	const [months, by] = useState(false);
+	const [open, set] = useState(false);
+	const has = (w: string) => p.words.split(" ").includes(w);
+	const turn = (w: string) => p.look(has(w) ? p.words.split(" ").filter((x) => x !== w).join(" ") : [...p.words.split(" ").filter((x) => !OUTCOMES.includes(x as "done")), w].join(" ").trim());
+	return <><div class="search"><input id="historywords" type="search" value={p.words} maxLength={60} placeholder={t("jobs.search")} aria-label={t("jobs.search")} onInput={(e) => p.look(e.currentTarget.value)} />
+		{OUTCOMES.map((o) => <Key class={has(o) ? "small primary" : "small quiet"} onPress={() => turn(o)}>{jobWord(o)}</Key>)}
+		<Key id="totals" class={open ? "small primary" : "small quiet"} onPress={() => set(!open)}>{t("jobs.totals")}</Key></div>
+		{open && <Totals words={p.words} months={months} by={by} />}</>;
+}
+
+interface Total { time: string; jobs: number; done: number; job_s: number; erode_s: number; energy_j: number | null }
+
+function Totals(p: { words: string; months: boolean; by: (m: boolean) => void }): JSX.Element {
+	const [rows] = useAsk<Total[]>("totals", { text: p.words, arg: p.months ? 1 : 0 });
+	return <><Choice label={t("jobs.totals")} value={p.months ? "m" : "d"} onChange={(v) => p.by(v === "m")} of={[{ value: "d", text: t("jobs.days") }, { value: "m", text: t("jobs.months") }]} />
+		<div class="scroll"><table class="list" id="totalrows"><thead><tr><th scope="col">{t(p.months ? "jobs.month" : "jobs.day")}</th><th scope="col">{t("page.jobs")}</th><th scope="col">{t("job.done")}</th><th scope="col">{t("jobs.time")}</th><th scope="col">{t("jobs.eroding")}</th><th scope="col">{t("jobs.energy")}</th></tr></thead>
+			<tbody>{(rows ?? []).map((r) => <tr><td>{r.time}</td><td class="n">{r.jobs}</td><td class="n">{r.done}</td><td class="n">{duration(r.job_s)}</td><td class="n">{duration(r.erode_s)}</td><td class="n">{energy(r.energy_j)}</td></tr>)}</tbody></table></div></>;
+}
+
 function History(p: { open: (j: Job) => void }): JSX.Element {
-	const { rows, refused, next } = usePages<Job>("past", { arg: 50, turn: link.state.job + link.state.jobState }, 5000);
+	const [words, look] = useState("");
+	const { rows, refused, next } = usePages<Job>("past", { arg: 50, text: words, turn: link.state.job + link.state.jobState }, 5000);
 	const [why, tell] = useState("");
 	const download = () => void table().then((a) => {
 		tell("refused" in a ? a.refused : "");
 		if ("csv" in a) save(`edm-${link.hello?.machine}-history.csv`, "text/csv", a.csv);
 	});
 	return <Card title={t("jobs.history")} right={rows && rows.length > 0 ? <Key id="historycsv" class="small quiet" label={t("jobs.csv")} onPress={download}>CSV</Key> : undefined}>{why && <p class="note">{why}</p>}{refused && <p class="note">{refused}</p>}
-		{rows && rows.length === 0 && <p class="calm">{t("jobs.nohistory")}</p>}
-		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b>
+		<Search words={words} look={look} />
+		{rows && rows.length === 0 && <p class="calm">{t(words ? "jobs.nofound" : "jobs.nohistory")}</p>}
+		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><Picture job={j.job} size={44} /><b>{j.name}</b>
 			<span class={`job-${j.state}`}>{jobWord(j.state)}</span><span class="when">{moment(j.ended_us / 1000)}</span><span class="n">{duration(j.job_s)}</span></button></li>)}</ul>
 		{next && <Key class="quiet" onPress={next}>{t("jobs.more")}</Key>}
 	</Card>;

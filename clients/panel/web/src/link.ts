@@ -29,7 +29,7 @@ export interface State {
 	overruns: number; lateMaxUs: number; tookMaxUs: number; periodUs: number;
 	jobS: number; condition: string; values: Record<string, number>;
 	set: string[]; told: Record<string, number>; generator_fault: string; jobs: boolean; job: string; jobName: string; jobState: string;
-	lines: number; queue: number; eta: number; etaMin: number; etaMax: number; etaBy: string; etaCondition: string; etaFactor: number; end: number; progress: number;
+	lines: number; queue: number; eta: number; etaMin: number; etaMax: number; etaBy: string; etaCondition: string; etaFactor: number; end: number; queueS: number; queueUntold: number; queueEnd: number; progress: number;
 	store: string;
 	interrupted: string; lost: string; faults: string; hunts: number;
 	electrode: number; shift: number; stand: string; standOf: number; asks: boolean;
@@ -54,7 +54,7 @@ const EMPTY: State = {
 	program: 0, unhomed: 0, limit: 0, jumps: 0, retracts: 0, shorts: 0,
 	overruns: 0, lateMaxUs: 0, tookMaxUs: 0, periodUs: 0, jobS: 0, condition: "",
 	values: {}, set: [], told: {}, generator_fault: "", jobs: false, job: "", jobName: "", jobState: "",
-	lines: 0, queue: 0, eta: -1, etaMin: -1, etaMax: -1, etaBy: "", etaCondition: "", etaFactor: 0, end: 0, progress: 0,
+	lines: 0, queue: 0, eta: -1, etaMin: -1, etaMax: -1, etaBy: "", etaCondition: "", etaFactor: 0, end: 0, queueS: 0, queueUntold: 0, queueEnd: 0, progress: 0,
 	store: "", interrupted: "", lost: "",
 	faults: "", hunts: 0, electrode: 0, shift: 0, stand: "", standOf: 0, asks: false,
 };

@@ -127,6 +127,11 @@ export const en = {
 	"jobs.waits": "waits for Start", "jobs.more": "Show more",
 	"jobs.resume": "Resume", "jobs.resume.about": "The job is read again and then stands ready. Start positions the electrode off the work and comes in along the path that was cut before.",
 	"jobs.resume.sure": "The machine stands where it shows: {axes}",
+	"jobs.front": "{name}: first", "jobs.back": "{name}: last", "jobs.clear": "Remove all that wait",
+	"jobs.total": "All of it takes {time}; if nothing is held, it ends {at}.", "jobs.untold": "Of {n} more that is not known.",
+	"jobs.search": "Name, day, T3 \u2026", "jobs.nofound": "No job has all of that.", "jobs.totals": "Totals", "jobs.days": "By day", "jobs.months": "By month",
+	"jobs.day": "Day", "jobs.month": "Month", "jobs.eroding": "Eroding", "jobs.text": "Program text",
+	"text.before": "Lines before", "text.after": "Lines behind", "text.line": "First line that is shown",
 	"jobs.ahead": "{name}: earlier", "jobs.behind": "{name}: later",
 
 	"job.queued": "queued", "job.ready": "ready", "job.running": "runs", "job.held": "held",
