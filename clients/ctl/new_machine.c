@@ -22,7 +22,7 @@
 #include <unistd.h>
 
 /* Return: false: the answers have ended. */
-bool new_machine_answer(struct machine *m, const char *question, const char *plain,
+bool new_answer(struct machine *m, const char *question, const char *plain,
 		   char ret[WORD_MAX])
 {
 	char line[256];
@@ -49,14 +49,14 @@ bool new_machine_answer(struct machine *m, const char *question, const char *pla
 }
 
 /* One of the words, which are divided by blanks. */
-bool new_machine_choose(struct machine *m, const char *question, const char *words,
+bool new_choose(struct machine *m, const char *question, const char *words,
 		   char ret[WORD_MAX])
 {
 	char plain[WORD_MAX];
 	size_t n;
 
 	snprintf(plain, sizeof(plain), "%.*s", (int)strcspn(words, " "), words);
-	while (new_machine_answer(m, question, plain, ret)) {
+	while (new_answer(m, question, plain, ret)) {
 		const char *at = strchr(ret, ' ') ? NULL : words;
 
 		n = strlen(ret);
@@ -69,12 +69,12 @@ bool new_machine_choose(struct machine *m, const char *question, const char *wor
 	return false;
 }
 
-bool new_machine_numbers(struct machine *m, const char *question, const char *plain,
+bool new_numbers(struct machine *m, const char *question, const char *plain,
 		    const struct wanted *w, double *const *ret)
 {
 	char word[WORD_MAX], *end;
 
-	while (new_machine_answer(m, question, plain, word)) {
+	while (new_answer(m, question, plain, word)) {
 		const char *at = word;
 		int i;
 
@@ -97,7 +97,7 @@ bool new_machine_numbers(struct machine *m, const char *question, const char *pl
 
 static bool ask_name(struct machine *m)
 {
-	while (new_machine_answer(m, "name of the machine", "edm", m->name)) {
+	while (new_answer(m, "name of the machine", "edm", m->name)) {
 		if (names_machine_ok(m->name))
 			return true;
 		fprintf(stderr, "%s\n", NAMES_MACHINE_WANTED);
@@ -127,7 +127,7 @@ static bool axes_fit(struct machine *m)
 
 static bool ask_axes(struct machine *m)
 {
-	while (new_machine_answer(m, "axes", is_wire(m) ? "XYUV" : "XYZC", m->axes)) {
+	while (new_answer(m, "axes", is_wire(m) ? "XYUV" : "XYZC", m->axes)) {
 		if (axes_fit(m))
 			return true;
 		fprintf(stderr, "each once, of X Y Z A B C U V; a %s machine "
@@ -152,7 +152,8 @@ static bool ask_axis(struct machine *m, char axis)
 
 	snprintf(q, sizeof(q), "%c: travel from and to, %s", axis, unit);
 	do {
-		if (!new_machine_numbers(m, q, is_rotary(axis) ? "-360 360" : "-100 100",
+		if (!new_numbers(m, q, is_rotary(axis) ? "-360 360" :
+							 "-100 100",
 			     &travel, (double *[]) { &m->from[i], &m->to[i] }))
 			return false;
 		if (!(m->from[i] < m->to[i]))
@@ -160,10 +161,10 @@ static bool ask_axis(struct machine *m, char axis)
 	} while (!(m->from[i] < m->to[i]));
 	snprintf(q, sizeof(q), "%c: one pulse, in thousandths of %s", axis,
 		 unit);
-	if (!new_machine_numbers(m, q, "1", &pulse, (double *[]) { &m->pulse_um[i] }))
+	if (!new_numbers(m, q, "1", &pulse, (double *[]) { &m->pulse_um[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: fastest, %s a second", axis, unit);
-	return new_machine_numbers(m, q, strcmp(m->backend, "gpio") == 0 ? "5" : "10",
+	return new_numbers(m, q, strcmp(m->backend, "gpio") == 0 ? "5" : "10",
 		       &fast, (double *[]) { &m->v_max[i] });
 }
 
@@ -176,7 +177,7 @@ static bool ask_gpio(struct machine *m, char axis)
 
 	snprintf(q, sizeof(q), "%c: lines of step and direction", axis);
 	snprintf(plain, sizeof(plain), "%d %d", 2 * i, 2 * i + 1);
-	if (!new_machine_numbers(m, q, plain, &lines, (double *[]) { &step, &dir }))
+	if (!new_numbers(m, q, plain, &lines, (double *[]) { &step, &dir }))
 		return false;
 	m->step[i] = (int)step;
 	m->dir[i] = (int)dir;
@@ -193,21 +194,21 @@ static bool ask_can(struct machine *m, char axis)
 
 	snprintf(q, sizeof(q), "%c: node of the drive", axis);
 	snprintf(plain, sizeof(plain), "%d", i + 1);
-	if (!new_machine_numbers(m, q, plain, &nodes, (double *[]) { &node }))
+	if (!new_numbers(m, q, plain, &nodes, (double *[]) { &node }))
 		return false;
 	m->step[i] = (int)node;
 	snprintf(q, sizeof(q), "%c: increments of the drive for a %s", axis,
 		 is_rotary(axis) ? "degree" : "mm");
-	if (!new_machine_numbers(m, q, "10000", &all,
+	if (!new_numbers(m, q, "10000", &all,
 		     (double *[]) { &m->increments[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: what holds it without power", axis);
-	return new_machine_choose(m, q, axis == 'Z' ? "drive free none" :
+	return new_choose(m, q, axis == 'Z' ? "drive free none" :
 		      "free drive none", m->holds[i]);
 }
 
 /* It becomes a value of the file as it is. */
-bool new_machine_is_word(const char *name)
+bool new_is_word(const char *name)
 {
 	for (const char *at = name; *at; at++) {
 		if (isalnum((unsigned char)*at) || strchr("-_./:!", *at))
@@ -224,12 +225,13 @@ static bool ask_backend(struct machine *m)
 	const bool can = strcmp(m->backend, "can402") == 0;
 
 	do {
-		if (gpio && !new_machine_answer(m, "the GPIO chip, as gpiodetect lists it",
+		if (gpio && !new_answer(m, "the GPIO chip, as gpiodetect lists "
+					"it",
 				    "gpiochip0", m->bus))
 			return false;
-		if (can && !new_machine_answer(m, "the CAN interface", "can0", m->bus))
+		if (can && !new_answer(m, "the CAN interface", "can0", m->bus))
 			return false;
-	} while ((gpio || can) && !new_machine_is_word(m->bus));
+	} while ((gpio || can) && !new_is_word(m->bus));
 	for (const char *at = m->axes; *at && (gpio || can); at++)
 		if (!(gpio ? ask_gpio(m, *at) : ask_can(m, *at)))
 			return false;
@@ -239,17 +241,19 @@ static bool ask_backend(struct machine *m)
 static bool ask_all(struct machine *m)
 {
 	if (!ask_name(m) ||
-	    !new_machine_choose(m, "kind: sinker or wire", "sinker wire", m->kind) ||
-	    !new_machine_choose(m, "what moves it: null (nothing yet), sim, gpio, can402",
-		    "null sim gpio can402", m->backend) || !ask_axes(m))
+	    !new_choose(m, "kind: sinker or wire", "sinker wire",
+				m->kind) ||
+	    !new_choose(m, "what moves it: null (nothing yet), sim, "
+				"gpio, can402", "null sim gpio can402",
+				m->backend) || !ask_axes(m))
 		return false;
 	for (const char *at = m->axes; *at; at++)
 		if (!ask_axis(m, *at))
 			return false;
 	return ask_backend(m) &&
-	       new_machine_choose(m, "dialect of its programs (edmsim "
+	       new_choose(m, "dialect of its programs (edmsim "
 		      "--document-dialects tells what they mean)",
-		      EDM_DIALECTS, m->dialect) && new_machine_more(m);
+		      EDM_DIALECTS, m->dialect) && new_more(m);
 }
 
 /* -- The file -------------------------------------------------------------- */
@@ -271,7 +275,7 @@ static void put_axis(FILE *f, const struct machine *m, int i)
 		fprintf(f, "drive_increments = %.0f\ndrive_pulses = %.0f\n"
 			"brake = %s\n", round(m->increments[i] * 1e3),
 			round(1e6 / m->pulse_um[i]), m->holds[i]);
-	new_machine_put_axis(f, m, i);
+	new_put_axis(f, m, i);
 	fputc('\n', f);
 }
 
@@ -282,7 +286,7 @@ static void put_lines(FILE *f, const struct machine *m)
 		if (strchr(m->axes, AXES[i]))
 			fprintf(f, "step_%c = %d\ndir_%c = %d\n", AXES[i],
 				m->step[i], AXES[i], m->dir[i]);
-	new_machine_put_lines(f, m);
+	new_put_lines(f, m);
 	fprintf(f, "; no `spark` line yet: docs/gpio.md says what guards it "
 		"wants\n\n");
 }
@@ -334,7 +338,7 @@ static void put_all(FILE *f, const struct machine *m)
 	if (strcmp(m->backend, "can402") == 0)
 		put_bus(f, m);
 	put_process(f, m);
-	new_machine_put_more(f, m);
+	new_put_more(f, m);
 	fprintf(f, "[nc]\ndialect = %s\n", m->dialect);
 }
 

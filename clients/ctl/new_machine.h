@@ -27,20 +27,20 @@ struct machine {
 	double home_at[NAXES];
 	char home_line[NAXES][WORD_MAX], limit_line[NAXES][WORD_MAX];
 	char gap[WORD_MAX], gap_at[3][WORD_MAX];
-	char generator[WORD_MAX], reached[WORD_MAX], by_hand[WORD_MAX];
-	char chain[WORD_MAX];
+	char generator[WORD_MAX], reached[WORD_MAX], peak[WORD_MAX];
+	char by_hand[WORD_MAX], chain[WORD_MAX];
 	double heights[3];		/* of a wire: guides, top of the work */
 	bool over;			/* no more answers */
 };
 
-/** new_machine_answer() - @plain is the answer to an empty line.
+/** new_answer() - @plain is the answer to an empty line.
  *  Return: false: the answers have ended. */
-bool new_machine_answer(struct machine *m, const char *question,
+bool new_answer(struct machine *m, const char *question,
 			const char *plain, char ret[WORD_MAX]);
 
-/** new_machine_choose() - one of the words, which are divided by blanks; the
+/** new_choose() - one of the words, which are divided by blanks; the
  *  first one is offered. */
-bool new_machine_choose(struct machine *m, const char *question,
+bool new_choose(struct machine *m, const char *question,
 			const char *words, char ret[WORD_MAX]);
 
 /* So many numbers, each within the range. */
@@ -49,22 +49,22 @@ struct wanted {
 	double from, to;
 };
 
-bool new_machine_numbers(struct machine *m, const char *question,
+bool new_numbers(struct machine *m, const char *question,
 			 const char *plain, const struct wanted *w,
 			 double *const *ret);
 
-/** new_machine_is_word() - is it letters, digits and - _ . / : ! alone?  It is
+/** new_is_word() - is it letters, digits and - _ . / : ! alone?  It is
  *  told if not. */
-bool new_machine_is_word(const char *name);
+bool new_is_word(const char *name);
 
-/** new_machine_more() - how axes find their places, the gap, the generator,
+/** new_more() - how axes find their places, the gap, the generator,
  *  joints, the wire. */
-bool new_machine_more(struct machine *m);
-/** new_machine_put_axis() - what was answered of an axis, for its section. */
-void new_machine_put_axis(FILE *f, const struct machine *m, int i);
-/** new_machine_put_lines() - ... for [gpio]. */
-void new_machine_put_lines(FILE *f, const struct machine *m);
-/** new_machine_put_more() - the other sections. */
-void new_machine_put_more(FILE *f, const struct machine *m);
+bool new_more(struct machine *m);
+/** new_put_axis() - what was answered of an axis, for its section. */
+void new_put_axis(FILE *f, const struct machine *m, int i);
+/** new_put_lines() - ... for [gpio]. */
+void new_put_lines(FILE *f, const struct machine *m);
+/** new_put_more() - the other sections. */
+void new_put_more(FILE *f, const struct machine *m);
 
 #endif /* CTL_NEW_MACHINE_H */

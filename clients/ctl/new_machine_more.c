@@ -18,8 +18,8 @@ static int index_of(char axis)
 static bool word(struct machine *m, const char *question, const char *plain,
 		 char ret[WORD_MAX])
 {
-	while (new_machine_answer(m, question, plain, ret))
-		if (new_machine_is_word(ret))
+	while (new_answer(m, question, plain, ret))
+		if (new_is_word(ret))
 			return true;
 	return false;
 }
@@ -34,17 +34,17 @@ static bool ask_home(struct machine *m, char axis)
 	char q[96];
 
 	snprintf(q, sizeof(q), "%c: how its place is found", axis);
-	if (!new_machine_choose(m, q, is(m->backend, "can402") ?
+	if (!new_choose(m, q, is(m->backend, "can402") ?
 				"none switch absolute" : "none switch",
 				m->home[i]))
 		return false;
 	snprintf(q, sizeof(q), "%c: the switch lies toward", axis);
 	if (is(m->home[i], "switch") &&
-	    !new_machine_choose(m, q, "- +", m->side[i]))
+	    !new_choose(m, q, "- +", m->side[i]))
 		return false;
 	snprintf(q, sizeof(q), "%c: its place there, mm or degrees", axis);
 	if (!is(m->home[i], "none") &&
-	    !new_machine_numbers(m, q, "0", &place,
+	    !new_numbers(m, q, "0", &place,
 				 (double *[]) { &m->home_at[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: line of the home switch", axis);
@@ -71,7 +71,7 @@ static bool ask_gap(struct machine *m)
 	}
 	if (!is(m->backend, "gpio"))
 		return true;
-	if (!new_machine_choose(m, "how the gap is read: none (not yet), lines "
+	if (!new_choose(m, "how the gap is read: none (not yet), lines "
 				"(comparators), voltage (a converter)",
 				"none lines voltage", m->gap))
 		return false;
@@ -92,21 +92,23 @@ static bool ask_generator(struct machine *m)
 {
 	if (is(m->backend, "null") || is(m->backend, "sim"))
 		return true;
-	if (!new_machine_choose(m, "how the generator gets a condition: none "
+	if (!new_choose(m, "how the generator gets a condition: none "
 				"(by hand), lines, can, modbus",
 				"none lines can modbus", m->generator))
 		return false;
 	if (is(m->generator, "modbus"))
 		return word(m, "its port, /dev/ttyUSB0 or ADDRESS:PORT",
-			    "/dev/ttyUSB0", m->reached);
+			    "/dev/ttyUSB0", m->reached) &&
+		       new_answer(m, "where the peak current goes",
+					  "register 10 scale 0.1", m->peak);
 	if (is(m->generator, "can"))
 		return word(m, "CAN identifier of its frame, docs/generator.md",
 			    "512", m->reached);
 	if (is(m->generator, "lines"))
-		return new_machine_answer(m, "lines of the peak current, as 20 "
-					  "21 26 weights 3 6 12; auto: none "
-					  "yet", "auto", m->reached);
-	return new_machine_answer(m, "what a person sets at it, as on_us "
+		return new_answer(m, "where the peak current goes",
+					  "lines 20 21 26 weights 3 6 12",
+					  m->peak);
+	return new_answer(m, "what a person sets at it, as on_us "
 				  "off_us", "none", m->by_hand);
 }
 
@@ -114,7 +116,7 @@ static bool ask_wire(struct machine *m)
 {
 	static const struct wanted height = { 3, -2000, 2000 };
 
-	return new_machine_numbers(m, "heights above the table, mm: lower "
+	return new_numbers(m, "heights above the table, mm: lower "
 				   "guide, upper guide, top of the work",
 				   "-20 80 40", &height, (double *[]) {
 					&m->heights[0], &m->heights[1],
@@ -127,7 +129,7 @@ static bool has_guides(const struct machine *m)
 	       strchr(m->axes, 'V');
 }
 
-bool new_machine_more(struct machine *m)
+bool new_more(struct machine *m)
 {
 	for (const char *at = m->axes; *at && !is(m->backend, "null"); at++)
 		if (!ask_home(m, *at))
@@ -135,7 +137,7 @@ bool new_machine_more(struct machine *m)
 	if (!ask_gap(m) || !ask_generator(m))
 		return false;
 	if (strpbrk(m->axes, "ABC") &&
-	    !new_machine_answer(m, "joints from work to tool, as C(0 0 -120) "
+	    !new_answer(m, "joints from work to tool, as C(0 0 -120) "
 				"A(0 15 -80) X Y Z; none", "none", m->chain))
 		return false;
 	return !has_guides(m) || ask_wire(m);
@@ -143,13 +145,15 @@ bool new_machine_more(struct machine *m)
 
 /* -- The file -------------------------------------------------------------- */
 
-void new_machine_put_axis(FILE *f, const struct machine *m, int i)
+void new_put_axis(FILE *f, const struct machine *m, int i)
 {
 	if (!*m->home[i] || is(m->home[i], "none"))
 		return;
 	fprintf(f, "home_method = %s\nhome_at_mm = %.10g\n", m->home[i],
 		m->home_at[i]);
-	if (is(m->home[i], "switch"))
+	if (is(m->home[i], "absolute"))
+		fprintf(f, "absolute = yes\n");
+	else
 		fprintf(f, "home_dir = %s\nhome_fast_mm_s = %.10g\n",
 			m->side[i], m->v_max[i]);
 }
@@ -160,7 +164,7 @@ static void put_line(FILE *f, const char *key, char axis, const char *line)
 		fprintf(f, "%s%c = %s\n", key, axis, line);
 }
 
-void new_machine_put_lines(FILE *f, const struct machine *m)
+void new_put_lines(FILE *f, const struct machine *m)
 {
 	for (int i = 0; i < NAXES; i++) {
 		put_line(f, "home_", AXES[i], m->home_line[i]);
@@ -183,15 +187,14 @@ static void put_generator(FILE *f, const struct machine *m)
 		fprintf(f, "modbus = %s\n", m->reached);
 	if (is(m->generator, "can"))
 		fprintf(f, "can_id = %s\n", m->reached);
-	if (is(m->generator, "lines"))
-		fprintf(f, "peak_a = %s%s\n", is(m->reached, "auto") ? "" :
-			"lines ", m->reached);
+	if (*m->peak)
+		fprintf(f, "peak_a = %s\n", m->peak);
 	if (*m->by_hand && !is(m->by_hand, "none"))
 		fprintf(f, "by_hand = %s\n", m->by_hand);
 	fputc('\n', f);
 }
 
-void new_machine_put_more(FILE *f, const struct machine *m)
+void new_put_more(FILE *f, const struct machine *m)
 {
 	put_generator(f, m);
 	if (*m->chain && !is(m->chain, "none"))

@@ -38,12 +38,13 @@ int store_move(struct store *s, uint32_t n, bool ahead)
 	return err ? err : set_turn(s, other, mine);
 }
 
-/* Everybody it passes gets the turn of the next one, and it that of the last. */
+/* Who is passed gets the turn of the next one, and it that of the last. */
 #define MOVE_ALL(ORDER) \
 	"UPDATE job SET turn=t FROM (SELECT n AS m, CASE WHEN n=?1 THEN " \
 	"last_value(own) OVER w ELSE lag(own) OVER w END AS t FROM (" \
 	"SELECT n, " STORE_TURN " AS own FROM job INDEXED BY job_by_turn " \
-	"WHERE state IN ('queued', 'interrupted') AND +state='queued' AND loaded=0) " \
+	"WHERE state IN ('queued', 'interrupted') AND +state='queued' AND " \
+	"loaded=0) " \
 	"WHERE own*" ORDER " >= (SELECT " STORE_TURN " FROM job WHERE n=?1)*" \
 	ORDER " WINDOW w AS (ORDER BY own*" ORDER " ROWS BETWEEN UNBOUNDED " \
 	"PRECEDING AND UNBOUNDED FOLLOWING)) WHERE n=m"
