@@ -144,6 +144,17 @@ static inline enum cycle_answer tell(struct rig *r, enum cycle_verb v)
 	return tell_mm(r, v, 0);
 }
 
+/* Of the cut that the cursor is in, or in front of which it stands. */
+static inline const struct interp_cond *
+cond_cut(const struct interp_cursor *at)
+{
+	const struct interp_seg *s = &at->seg;
+
+	for (uint32_t i = at->index + 1; s->kind >= INTERP_BEGIN; i++)
+		s = &at->p.segs[i];
+	return &at->p.conds[s->cond];
+}
+
 static inline bool sparking_state(enum cycle_state s)
 {
 	return s == STATE_APPROACH || s == STATE_ERODE;

@@ -98,8 +98,7 @@ static bool same(double a, double b)
 /* What the place wants, as the generator can do it. */
 static double wanted(const struct rig *r, int i)
 {
-	const struct interp_cond *c =
-		&r->c.cursor.p.conds[r->c.cursor.seg.cond];
+	const struct interp_cond *c = cond_cut(&r->c.cursor);
 
 	return process_nearest(&r->c.config.asking.field[i], i, c->tech.v[i]);
 }

@@ -105,10 +105,27 @@ bool conditions_begin(struct cycle *c)
 	return apply(c, c->cursor.seg.cond);
 }
 
+/* Behind an action, where there are to be sparks, it is that of the cut ahead:
+ * the action may be the program's begin, and have none. */
+static uint16_t cond_here(const struct cycle *c)
+{
+	const struct interp_program *p = &c->cursor.p;
+	const struct interp_seg *here = &c->cursor.seg;
+	struct interp_seg ahead;
+
+	if (here->kind < INTERP_BEGIN || here->kind == INTERP_END ||
+	    !state_duty[c->state].power)
+		return here->cond;
+	ahead = p->segs[c->cursor.index + 1];
+	return interp_program_seg_ok(p, c->cursor.index + 1, &ahead) &&
+	       ahead.kind < INTERP_BEGIN ? ahead.cond : here->cond;
+}
+
 bool conditions_follow(struct cycle *c)
 {
-	return c->cursor.seg.cond == c->conditions.cond ||
-	       apply(c, c->cursor.seg.cond);
+	const uint16_t cond = cond_here(c);
+
+	return cond == c->conditions.cond || apply(c, cond);
 }
 
 void conditions_say(struct cycle *c, bool negative)
