@@ -30,6 +30,7 @@ static const struct list lists[] = {
 	  INTERP_MCODE_STOP },
 };
 
+#define CHANGER	6			/* M6 */
 #define NLISTS	(sizeof(lists) / sizeof(lists[0]))
 
 static int refuse(struct interp_diag *d, const struct list *l,
@@ -56,13 +57,19 @@ static int put(struct interp_mcode *table, const struct list *l,
 	if (l->sync && m->sync)
 		return refuse(d, l, what, "each M code in one of m_before, "
 			      "m_after and m_free, once");
-	if (!l->sync && (!m->sync || m->back))
+	if (!l->sync && (!m->sync || (m->back && n != CHANGER)))
 		return refuse(d, l, what, "M codes of m_before, m_after or "
 			      "m_free, in one of m_redo and m_stop");
+	if (n == CHANGER && l->back == INTERP_MCODE_REDO)
+		return refuse(d, l, what, "M6 not here: no way back leads over "
+			      "a change of the electrode");
 	if (l->sync)
 		m->sync = l->sync;
 	else
 		m->back = l->back;
+	/* Another electrode would go where the last one has cut. */
+	if (n == CHANGER)
+		m->back = INTERP_MCODE_STOP;
 	return 0;
 }
 

@@ -305,6 +305,27 @@ static void what_is_believed_of_an_axis_is_off_by_the_model_error(void **state)
 	}
 }
 
+/* A changer's code, with or without m_stop. */
+static void no_way_back_leads_over_m6(void **state)
+{
+	static const char *const texts[] = {
+		"[plc]\nm_before = 6 60\n",
+		"[plc]\nm_after = 6\nm_before = 60\nm_stop = 6\n"
+	};
+
+	(void)state;
+	for (size_t i = 0; i < COUNT(texts); i++) {
+		struct interp_mcode table[INTERP_NMCODES];
+		struct machine_config c;
+		struct interp_diag d;
+
+		assert_int_equal(read_text(texts[i], &c, &d), 0);
+		config_mcodes(&c, table);
+		assert_int_equal(table[6].back, INTERP_MCODE_STOP);
+		assert_int_equal(table[60].back, 0);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -324,6 +345,7 @@ int main(void)
 		cmocka_unit_test(positioning_has_no_limit_but_that_of_its_axes),
 		cmocka_unit_test(the_servo_takes_from_the_machine_what_is_not_given),
 		cmocka_unit_test(what_is_believed_of_an_axis_is_off_by_the_model_error),
+		cmocka_unit_test(no_way_back_leads_over_m6),
 	};
 
 	return cmocka_run_group_tests_name("config", tests, make_file,

@@ -15,7 +15,6 @@ PLC = """
 interface = vcan1
 alive_ms = 1000
 m_before = 6 60
-m_stop = 6
 [sim]
 speed = 1
 """
