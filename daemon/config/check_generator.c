@@ -11,6 +11,7 @@
 			"5 6 codes 2 4 8 16; one line for what is on or off"
 #define WANTED_CAN	"can ID byte N, as can 1009 byte 2 bits 16 scale 0.1; " \
 			"or bit N, of the byte"
+#define WANTED_PLC	"or plc, the PLC's own signal of that"
 #define WANTED_REGISTER	"register N, as register 10 scale 0.1, or as " \
 			"register 11 codes 2 4 8 16; bit N for what is on " \
 			"or off; told_ also input N"
@@ -44,14 +45,15 @@ static const char *misfit(const struct check *q, int field, bool told,
 
 	if (w->kind == WAY_NONE)
 		return NULL;
-	if (interface != GENERATOR_LINES && interface != GENERATOR_CAN &&
-	    interface != GENERATOR_MODBUS)
-		return "is of a generator without interface lines, can or "
-		       "modbus";
+	if (!config_generator_beside(interface))
+		return "is of a generator without interface lines, can, modbus "
+		       "or plc";
 	if (w->kind == WAY_CAN && interface != GENERATOR_CAN)
 		return "is a frame, and the interface is not can";
 	if (w->kind == WAY_REGISTER && interface != GENERATOR_MODBUS)
 		return "is a register, and the interface is not modbus";
+	if (w->kind == WAY_PLC && interface != GENERATOR_PLC)
+		return "is by the PLC, and the interface is not plc";
 	if (told && w->kind == WAY_LINES)
 		return "is told by lines, which are outputs";
 	if (!told && w->input)
@@ -69,8 +71,7 @@ static int check_way(struct check *q, int field, bool told)
 {
 	const char *text = told ? q->c->generator.told[field] :
 				  q->c->generator.field[field];
-	const bool modbus = config_generator_interface(q->c) ==
-			    GENERATOR_MODBUS;
+	const int interface = config_generator_interface(q->c);
 	struct config_way w;
 	const char *wrong;
 	char key[24];
@@ -85,7 +86,8 @@ static int check_way(struct check *q, int field, bool told)
 		return 0;
 	interp_diag_say(q->diag, "generator.%s \"%.60s\" %s; none, %s; %s",
 			key, text, wrong, WANTED_LINES,
-			modbus ? WANTED_REGISTER : WANTED_CAN);
+			interface == GENERATOR_MODBUS ? WANTED_REGISTER :
+			interface == GENERATOR_PLC ? WANTED_PLC : WANTED_CAN);
 	return refuse(q, key);
 }
 
@@ -273,18 +275,39 @@ static int check_guard(struct check *q, int line, const char *by,
 	return refuse(q, "spark");
 }
 
-/* -- Modbus ---------------------------------------------------------------- */
+/* -- Modbus and a PLC ------------------------------------------------------ */
 
-static bool has_registers(const struct machine_config *c)
+static bool has(const struct machine_config *c, enum config_way_kind kind)
 {
 	struct config_way w;
 
 	for (int i = 0; i < PROCESS_NFIELDS; i++) {
 		config_way(c, i, false, &w);
-		if (w.kind == WAY_REGISTER)
+		if (w.kind == kind)
 			return true;
 	}
 	return false;
+}
+
+/* What takes a round trip sets something, and does not end the sparks. */
+static int check_slow(struct check *q, enum config_way_kind kind,
+		      const char *wanted)
+{
+	const int interface = config_generator_interface(q->c);
+	struct config_way spark;
+
+	if (!has(q->c, kind)) {
+		interp_diag_say(q->diag, "generator.interface is %s and it "
+				"reaches no field; peak_a = %s",
+				config_interface_word(interface), wanted);
+		return refuse(q, "interface");
+	}
+	config_way(q->c, PROCESS_SPARK, false, &spark);
+	if (spark.kind != WAY_NONE || !config_backend(q->c)->has_gap(q->c))
+		return 0;
+	interp_diag_say(q->diag, "generator.spark reaches nothing; spark = %s",
+			"line N, or [gpio] spark: a line ends sparks at once");
+	return refuse(q, "spark");
 }
 
 static int check_modbus_at(struct check *q)
@@ -322,24 +345,33 @@ static int check_modbus_silence(struct check *q)
 
 static int check_modbus(struct check *q)
 {
-	struct config_way spark;
-
 	if (config_generator_interface(q->c) != GENERATOR_MODBUS)
 		return 0;
-	if (check_modbus_at(q) || check_modbus_silence(q))
-		return -EINVAL;
-	if (!has_registers(q->c)) {
-		interp_diag_say(q->diag, "generator.interface is modbus and no "
-				"field has a register; peak_a = %s",
-				WANTED_REGISTER);
+	return check_modbus_at(q) || check_modbus_silence(q) ||
+	       check_slow(q, WAY_REGISTER, WANTED_REGISTER) ? -EINVAL : 0;
+}
+
+/* CiA 301 keeps 6E0 and what follows for itself. */
+#define PULSE_NODE_MAX	95
+
+static int check_by_plc(struct check *q)
+{
+	if (config_generator_interface(q->c) != GENERATOR_PLC)
+		return 0;
+	if (!config_has_plc(q->c)) {
+		interp_diag_say(q->diag, "generator.interface is plc and there "
+				"is no PLC; [plc] interface = can1, or where "
+				"it is");
 		return refuse(q, "interface");
 	}
-	config_way(q->c, PROCESS_SPARK, false, &spark);
-	if (spark.kind != WAY_NONE || !config_backend(q->c)->has_gap(q->c))
-		return 0;
-	interp_diag_say(q->diag, "generator.spark reaches nothing; spark = %s",
-			"line N, or [gpio] spark: a line ends sparks at once");
-	return refuse(q, "spark");
+	if (q->c->plc.node > PULSE_NODE_MAX) {
+		interp_diag_say(q->diag, "generator.interface is plc and "
+				"plc.node %.0f; a node of 1 to %d, for the "
+				"identifier of EdmdPulse", q->c->plc.node,
+				PULSE_NODE_MAX);
+		return refuse(q, "interface");
+	}
+	return check_slow(q, WAY_PLC, "plc");
 }
 
 static int check_interface(struct check *q)
@@ -351,7 +383,7 @@ static int check_interface(struct check *q)
 		return 0;
 	interp_diag_say(q->diag, "generator.interface and machine.backend do "
 			"not agree; interface = sim with backend sim, %s",
-			"and none, lines, can or modbus with the others");
+			"and none, lines, can, modbus or plc with the others");
 	return refuse(q, "interface");
 }
 
@@ -377,7 +409,7 @@ int config_check_generator(const struct machine_config *c,
 		    check_bits(&q, i, true) || check_ids(&q, i, true))
 			return -EINVAL;
 	}
-	return check_modbus(&q) ||
+	return check_modbus(&q) || check_by_plc(&q) ||
 	       check_guard(&q, LINE_WATCHDOG, c->gpio.watchdog_by,
 			   "watchdog") ||
 	       check_guard(&q, LINE_ESTOP, c->gpio.estop_by, "estop") ?

@@ -124,7 +124,7 @@ static void asking_of(const struct machine_config *m, struct cycle_config *c)
 	struct asking_config *a = &c->asking;
 
 	a->limited = config_generator_limits(m);
-	a->answers = config_generator_interface(m) == GENERATOR_MODBUS;
+	a->answers = config_generator_interface(m) >= GENERATOR_MODBUS;
 	a->settle_cycles = cycles_of(g->settle_ms * 1e-3, c->period_ns);
 	a->polarity_cycles = cycles_of(g->polarity_ms * 1e-3, c->period_ns);
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {

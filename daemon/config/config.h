@@ -70,7 +70,7 @@ enum config_interface {
 	GENERATOR_AUTO,			/* the simulated one with backend sim,
 					 * else none */
 	GENERATOR_SIM, GENERATOR_NONE, GENERATOR_LINES, GENERATOR_CAN,
-	GENERATOR_MODBUS,
+	GENERATOR_MODBUS, GENERATOR_PLC,
 	GENERATOR_NINTERFACES
 };
 
@@ -421,6 +421,7 @@ enum config_way_kind {
 	WAY_CAN,
 	WAY_LINES,
 	WAY_REGISTER,			/* of a Modbus slave */
+	WAY_PLC,			/* signals of the PLC */
 };
 
 /* How one field reaches the generator, or is told by it. */
@@ -477,6 +478,9 @@ bool config_generator_limits(const struct machine_config *c);
 
 /** config_generator_interface() - enum config_interface, never AUTO. */
 int config_generator_interface(const struct machine_config *c);
+
+/** config_generator_beside() - is it a device beside the machine's backend? */
+bool config_generator_beside(int interface);
 
 /** config_interface_word() - of enum config_interface; NULL: no such one. */
 const char *config_interface_word(int interface);

@@ -18,6 +18,11 @@ int config_generator_interface(const struct machine_config *c)
 						     GENERATOR_NONE;
 }
 
+bool config_generator_beside(int interface)
+{
+	return interface >= GENERATOR_LINES;
+}
+
 bool config_generator_limits(const struct machine_config *c)
 {
 	return config_generator_interface(c) != GENERATOR_SIM &&
@@ -65,20 +70,25 @@ static void by_itself(const struct machine_config *c, int field,
 	*ret = (struct config_way) { .kind = WAY_NONE };
 	if (interface == GENERATOR_CAN && !config_generator_gpio(c, field))
 		usual_frame(c, field, ret);
+	else if (interface == GENERATOR_PLC && config_plc_pulse(field) &&
+		 !config_generator_gpio(c, field))
+		config_way_read("plc", field, ret);
 	else if (interface == GENERATOR_SIM || config_generator_gpio(c, field))
 		ret->kind = WAY_OWN;
 	if (ret->kind == WAY_OWN)
 		config_way_all(field, false, &ret->gives);
 }
 
-/* A register that is written can be read. */
+/* A register that is written can be read, and a PLC tells what it sets. */
 static void told_by_itself(const struct machine_config *c, int field,
 			   struct config_way *ret)
 {
 	*ret = (struct config_way) { .kind = WAY_NONE };
 	if (field < PROCESS_NFIELDS)
 		config_way(c, field, false, ret);
-	if (ret->kind != WAY_REGISTER)
+	else if (config_generator_interface(c) == GENERATOR_PLC)
+		config_way_read("plc", field, ret);
+	if (ret->kind != WAY_REGISTER && ret->kind != WAY_PLC)
 		*ret = (struct config_way) { .kind = WAY_NONE };
 }
 

@@ -213,6 +213,9 @@ uint32_t config_hand_read(const char *text, char odd[CONFIG_WAY_WORD]);
 /** config_fault_read() - what is wrong with fault_words, or NULL. */
 const char *config_fault_read(const char *words);
 
+/** config_plc_pulse() - can a PLC set this field, or tell it? */
+bool config_plc_pulse(int field);
+
 /** config_generator_gpio() - does [gpio] have a line for this field? */
 bool config_generator_gpio(const struct machine_config *c, int field);
 

@@ -7,7 +7,7 @@
 const char *config_interface_word(int i)
 {
 	static const char *const words[] = {
-		"auto", "sim", "none", "lines", "can", "modbus"
+		"auto", "sim", "none", "lines", "can", "modbus", "plc"
 	};
 
 	return WORD_OF(words, i);
@@ -32,7 +32,8 @@ static const char *parity_word(int i)
 	       generator.told[INTERP_TECH_##i], \
 	       "where the generator tells the " key " that is in force, as " \
 	       "can 1011 byte 0 bits 16 scale 0.1, or as register 30 scale " \
-	       "0.1; auto: in the register that is written, else none")
+	       "0.1; auto: in the register that is written, by the PLC that " \
+	       "sets it, else none")
 
 /* clang-format off */
 static const struct config_key row[] = {
@@ -47,7 +48,7 @@ static const struct config_key row[] = {
 	WAY("peak_a", INTERP_TECH_PEAK_A,
 	    "how the peak current reaches it, as lines 20 21 26 weights 3 6 "
 	    "12, as can 1009 byte 2 bits 16 scale 0.1, or as register 10 "
-	    "scale 0.1; none: not at all; "
+	    "scale 0.1; plc: the PLC sets it; none: not at all; "
 	    "auto: as the interface has it"),
 	WAY("on_us", INTERP_TECH_ON_US, "the same for the on time"),
 	WAY("off_us", INTERP_TECH_OFF_US,
@@ -72,9 +73,10 @@ static const struct config_key row[] = {
 	SUM("shorts", SHORTS, "where it counts shorts"),
 	SUM("energy_j", ENERGY_J,
 	    "where it sums the energy of the discharges; scale: J of a count"),
-	STRING(GENERATOR, "told_fault", "none", generator.told[PROCESS_FAULT],
+	STRING(GENERATOR, "told_fault", "auto", generator.told[PROCESS_FAULT],
 	       "where it tells the number of its own fault, 0: none, as "
-	       "can 1012 byte 4 bits 8, or as input 45"),
+	       "can 1012 byte 4 bits 8, or as input 45; auto: by the PLC that "
+	       "sets it, else none"),
 	STRING(GENERATOR, "fault_words", "none", generator.fault_words,
 	       "its own faults in words, as 1 no water, 2 too warm"),
 	STRING(GENERATOR, "by_hand", "none", generator.by_hand,

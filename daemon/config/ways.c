@@ -4,6 +4,8 @@
  */
 #include "keys.h"
 
+#include "plc_signals.h"
+
 #include <arpa/inet.h>
 #include <errno.h>
 #include <math.h>
@@ -17,6 +19,7 @@ const char *config_way_word(enum config_way_kind kind)
 	static const char *const words[] = {
 		[WAY_NONE] = "none", [WAY_OWN] = "own", [WAY_CAN] = "can",
 		[WAY_LINES] = "lines", [WAY_REGISTER] = "register",
+		[WAY_PLC] = "plc",
 	};
 
 	return words[kind];
@@ -230,7 +233,8 @@ static bool read_place(struct words *w, struct place *at,
 /* In a frame the count with all bits set says: the generator's own setting. */
 static void give_counts(struct config_way *w, int field)
 {
-	const double counts = exp2(w->bits) - (w->kind == WAY_CAN ? 2 : 1);
+	const double counts = exp2(w->bits) -
+			      (w->kind == WAY_REGISTER ? 1 : 2);
 	const double least = ceil(range_min(field) / w->scale);
 
 	w->gives.step = w->scale;
@@ -314,6 +318,43 @@ static const char *read_register(struct words *w, int field,
 	return wrong ? wrong : give_codes(ret, field);
 }
 
+/* The scale of its signal; 1: it is a bit, or a number; 0: a PLC has none. */
+static double plc_scale(int field)
+{
+#define SCALE(S, id, i, name, unit, scale, help) [INTERP_TECH_##id] = scale,
+	static const double scale[PROCESS_NTOLD] = {
+		PLC_PULSE_ROWS(SCALE, 0)
+		[INTERP_TECH_POLARITY] = 1, [INTERP_TECH_ISO] = 1,
+		[PROCESS_PUMP] = 1, [PROCESS_FAULT] = 1,
+	};
+#undef SCALE
+
+	return scale[field];
+}
+
+bool config_plc_pulse(int field)
+{
+	return plc_scale(field) > 0;
+}
+
+/* As in a frame, all bits set say: its own setting. */
+static const char *read_plc(struct words *w, int field, struct config_way *ret)
+{
+	*ret = (struct config_way) {
+		.kind = WAY_PLC, .gives.there = true,
+		.bits = is_switch(field) ? 1 : NATURAL_BITS,
+		.scale = plc_scale(field),
+	};
+	if (*w->at)
+		return "has a word after plc";
+	if (field == PROCESS_SPARK || field == PROCESS_SENSE)
+		return "is by the PLC, and those take a round trip: it must be "
+		       "a line";
+	if (!config_plc_pulse(field))
+		return "is a sum, and the PLC has no signal for it";
+	return give_place(ret, field);
+}
+
 const char *config_way_read(const char *text, int field,
 			    struct config_way *ret)
 {
@@ -329,7 +370,9 @@ const char *config_way_read(const char *text, int field,
 		return read_can(&w, field, ret);
 	if (strcmp(w.word, "register") == 0 || strcmp(w.word, "input") == 0)
 		return read_register(&w, field, ret);
-	return "begins with no word of auto, none, lines, can, register";
+	if (strcmp(w.word, "plc") == 0)
+		return read_plc(&w, field, ret);
+	return "begins with no word of auto, none, lines, can, register, plc";
 }
 
 /* Numbers only: to look a name up takes as long as it likes. */

@@ -50,7 +50,7 @@ static int machine_open(struct loop *l, const struct machine_config *c)
 
 	if (err < 0)
 		return machine_refuse(err, &diag);
-	err = io_generator_open(&l->io, c, &diag);
+	err = io_generator_open(&l->io, c, &l->plc.plc, &diag);
 	if (err < 0) {
 		l->io.close(l->io.self);
 		return machine_refuse(err, &diag);

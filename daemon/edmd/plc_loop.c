@@ -70,6 +70,7 @@ void loop_plc_write(struct loop *l)
 		.electrode = (uint16_t)c->job.electrode,
 		.condition = (uint16_t)whole(c->out.cond_number, 0, UINT16_MAX),
 		.letter = (uint8_t)c->out.cond_letter,
+		.pulse = l->plc.plc.tell.pulse,	/* the generator's */
 	};
 
 	memcpy(t.pos, c->out.target, sizeof(t.pos));

@@ -47,9 +47,9 @@ static void put_values(const struct generator_note *n, const char *how,
 {
 	char asked[24], told[24];
 
-	snprintf(buf, size, "generator: %s %s: asked %s, told %s",
+	snprintf(buf, size, "generator: %s %s: asked %s, told %s%s",
 		 process_name(n->field), how, value_text(n->asked, asked),
-		 value_text(n->told, told));
+		 value_text(n->told, told), n->code ? ", not taken" : "");
 }
 
 static void put_text(const struct generator_note *n, const char *words,
@@ -112,6 +112,33 @@ static bool generator_note(void *self, char *buf, size_t size)
 
 /* -- What it says ---------------------------------------------------------- */
 
+static bool tells(const struct generator *g, int field)
+{
+	return g->told[field].kind != WAY_NONE;
+}
+
+static bool is_taken(const struct generator *g, int field)
+{
+	return field < PROCESS_NFIELDS &&
+	       (g->way[field].kind == WAY_REGISTER ||
+		g->way[field].kind == WAY_PLC);
+}
+
+/* One that tells nothing still answers. */
+static bool answers(const struct generator *g, int field)
+{
+	return tells(g, field) || is_taken(g, field);
+}
+
+static bool agrees(const struct generator *g, int field)
+{
+	const struct config_way *w = &g->told[field];
+	const double slack = fmax(w->scale, g->way[field].scale) * 0.501;
+
+	return !tells(g, field) || isnan(g->value[field]) ||
+	       fabs(g->heard[field] - g->value[field]) <= slack;
+}
+
 static void trouble(struct generator *g, const struct generator_note *n)
 {
 	struct generator_note full = *n;
@@ -123,6 +150,8 @@ static void trouble(struct generator *g, const struct generator_note *n)
 		full.asked = g->value[n->field];
 		full.told = g->heard[n->field];
 	}
+	if (n->kind == GENERATOR_LATE || n->kind == GENERATOR_DIFFERS)
+		full.code = agrees(g, n->field);
 	generator_tell(g, &full);
 }
 
@@ -138,38 +167,26 @@ void generator_refused(struct generator *g, int field, int exception)
 		.kind = GENERATOR_REFUSES, .field = field, .code = exception });
 }
 
-static bool tells(const struct generator *g, int field)
-{
-	return g->told[field].kind != WAY_NONE;
-}
-
-/* A slave that tells nothing still answers. */
-static bool answers(const struct generator *g, int field)
-{
-	return tells(g, field) || (field < PROCESS_NFIELDS &&
-				   g->way[field].kind == WAY_REGISTER);
-}
-
-static bool agrees(const struct generator *g, int field)
-{
-	const struct config_way *w = &g->told[field];
-	const double slack = fmax(w->scale, g->way[field].scale) * 0.501;
-
-	return !tells(g, field) || isnan(g->value[field]) ||
-	       fabs(g->heard[field] - g->value[field]) <= slack;
-}
-
 /* The first field that it tells otherwise, or that waits for its answer; -1:
  * there is none. */
 static int odd_one(const struct generator *g)
 {
-	const bool waits = g->modbus && g->taken_version != g->asked;
+	const bool waits = g->takes && g->taken_version != g->asked;
 
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		if (!agrees(g, i))
 			return i;
 	for (int i = 0; i < PROCESS_NFIELDS && waits; i++)
-		if (g->way[i].kind == WAY_REGISTER)
+		if (is_taken(g, i))
+			return i;
+	return -1;
+}
+
+/* One that it had, and tells otherwise now; -1: there is none. */
+static int lost_one(const struct generator *g)
+{
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		if (g->had >> i & 1 && !agrees(g, i))
 			return i;
 	return -1;
 }
@@ -187,16 +204,37 @@ static bool is_silent(struct generator *g)
 	return silent;
 }
 
+static bool is_there(const struct generator *g)
+{
+	for (int i = 0; i < PROCESS_NTOLD; i++)
+		if (answers(g, i) && g->age[i] >= g->up)
+			return false;
+	return true;
+}
+
+/* It may be switched on after edmd: it is judged from then on. */
+static void greet(struct generator *g)
+{
+	if (g->came || !is_there(g))
+		return;
+	g->came = true;
+	g->waited = 0;
+	g->says.trouble = false;
+}
+
 static void look(struct generator *g)
 {
 	const bool silent = is_silent(g);
-	const int odd = odd_one(g);
+	const int odd = odd_one(g), lost = lost_one(g);
 
 	if (g->heard[PROCESS_FAULT] > 0)
 		trouble(g, &(struct generator_note) {
 			.kind = GENERATOR_FAULT, .field = PROCESS_FAULT,
 			.code = (int)g->heard[PROCESS_FAULT] });
+	if (lost >= 0)
+		trouble_of(g, GENERATOR_DIFFERS, lost);
 	if (odd < 0 && !silent) {
+		g->had = UINT32_MAX;
 		g->says.in_force = g->asked;
 		g->waited = 0;
 	} else if (g->says.in_force == g->asked) {
@@ -224,10 +262,16 @@ static void generator_read(void *self, struct io_inputs *in)
 
 	g->axes.read(g->axes.self, in);
 	g->ill = in->trouble != IO_WELL || in->lost;
+	for (int i = 0; i < PROCESS_NTOLD; i++)
+		g->age[i] += g->age[i] < UINT32_MAX;
+	g->up += g->up < UINT32_MAX;
 	if (g->fd >= 0)
 		generator_can_read(g);
 	if (g->modbus)
 		g->modbus_read(g);
+	if (g->plc)
+		generator_plc_read(g);
+	greet(g);
 	look(g);
 	hand_energy_on(g, in);
 	memcpy(g->says.told, g->heard, sizeof(g->says.told));
@@ -295,13 +339,20 @@ double generator_value(const struct config_way *w, int field, uint64_t count)
 
 static void take(struct generator *g, const struct io_outputs *out)
 {
-	if (out->asked != g->asked) {
+	const bool other = out->asked != g->asked;
+
+	if (other) {
 		g->waited = 0;
 		g->says.trouble = false;	/* it is judged anew */
 	}
+	/* A step against arcs, with sparks, is of one value. */
+	if ((other && !out->power) || out->reset)
+		g->had = 0;
 	g->asked = out->asked;
-	for (int i = 0; i < INTERP_NGENERATOR; i++)
+	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+		g->had &= ~((uint32_t)(g->value[i] != out->pulse[i]) << i);
 		g->value[i] = out->pulse[i];
+	}
 	g->anew = out->reset;
 	if (out->reset) {		/* what it has must be told again */
 		g->says.trouble = false;
@@ -323,6 +374,8 @@ static void generator_write(void *self, const struct io_outputs *out)
 		generator_can_write(g);
 	if (g->modbus)
 		g->modbus_write(g);
+	if (g->plc)
+		generator_plc_write(g);
 	g->axes.write(g->axes.self, out);
 }
 

@@ -123,8 +123,6 @@ void generator_can_read(struct generator *g)
 {
 	struct can_msg m = { 0 };
 
-	for (int i = 0; i < PROCESS_NTOLD; i++)
-		g->age[i] += g->age[i] < UINT32_MAX;
 	for (int i = 0; i < RX_MAX; i++) {
 		switch (can_socket_receive(g->fd, &m)) {
 		case CAN_NOTHING:

@@ -565,8 +565,6 @@ static void modbus_read(struct generator *g)
 	const uint64_t next = __atomic_load_n(&m->word_next, __ATOMIC_ACQUIRE);
 	struct word w;
 
-	for (int i = 0; i < PROCESS_NTOLD; i++)
-		g->age[i] += g->age[i] < UINT32_MAX;
 	if (next == m->seen || !stamped_last(&words, TRIES, &w))
 		return;
 	m->seen = next;
@@ -696,6 +694,7 @@ int generator_modbus_open(struct generator *g, const struct machine_config *c,
 		return err;
 	}
 	g->modbus = m;
+	g->takes = true;
 	g->taken_version = NONE;
 	g->modbus_write = modbus_write;
 	g->modbus_read = modbus_read;

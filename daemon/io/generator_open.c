@@ -46,7 +46,7 @@ static bool has(const struct generator *g, enum config_way_kind kind)
 }
 
 int io_generator_open(struct io_machine *m, const struct machine_config *c,
-		      struct interp_diag *diag)
+		      struct plc *plc, struct interp_diag *diag)
 {
 	const int interface = config_generator_interface(c);
 	const bool bus = config_generator_frames(c,
@@ -55,8 +55,7 @@ int io_generator_open(struct io_machine *m, const struct machine_config *c,
 	struct generator *g;
 	int fd = -1, err = 0;
 
-	if (interface != GENERATOR_LINES && interface != GENERATOR_CAN &&
-	    interface != GENERATOR_MODBUS)
+	if (!config_generator_beside(interface))
 		return 0;
 	if (bus)
 		fd = bus_open(c, diag);
@@ -65,6 +64,8 @@ int io_generator_open(struct io_machine *m, const struct machine_config *c,
 	g = generator_attach(m, c, fd);
 	if (!g)
 		return -ENOMEM;
+	g->takes = interface == GENERATOR_PLC;
+	g->plc = g->takes ? plc : NULL;
 	if (has(g, WAY_LINES))
 		err = generator_lines_open(g, c, diag);
 	if (err == 0 && interface == GENERATOR_MODBUS)

@@ -10,6 +10,7 @@
 #include "can_socket.h"
 #include "config.h"
 #include "generator.h"
+#include "plc.h"
 
 #include <stdatomic.h>
 
@@ -48,6 +49,10 @@ struct generator {
 	uint32_t refresh, silent, confirm;	/* periods */
 	struct io_generator says;
 	uint32_t waited;		/* periods for its word */
+	uint32_t up;			/* periods since it was opened */
+	bool came;			/* it has told all that it tells */
+	uint32_t had;			/* a bit for each value that it had as
+					 * it is asked */
 	const char *fault_words;	/* config_fault_words() */
 	bool ill;			/* the axes: no sparks */
 	/* CAN; fd -1: none. */
@@ -65,11 +70,18 @@ struct generator {
 	void (*lines_close)(struct generator_lines *l);
 	/* Modbus; NULL: none. */
 	struct generator_modbus *modbus;
-	uint32_t taken_version;		/* that the slave has taken */
-	bool anew;			/* write what it has taken once more */
+	/* Modbus and a PLC say which version they have taken. */
+	bool takes;
+	uint32_t taken_version;
+	bool anew;			/* what it has taken once more */
 	void (*modbus_write)(struct generator *g);
 	void (*modbus_read)(struct generator *g);
 	void (*modbus_end)(struct generator_modbus *m);
+	/* A PLC; NULL: none. */
+	struct plc *plc;
+	uint32_t plc_heard[PLC_NRPDO];	/* of struct plc, as seen last */
+	bool plc_empty;			/* it has said that it has nothing of
+					 * before */
 	/* Written by read and write, taken by note. */
 	struct generator_note notes[GENERATOR_NOTES];
 	_Atomic uint32_t put, taken;
@@ -129,5 +141,13 @@ int generator_lines_open(struct generator *g, const struct machine_config *c,
  *  need not be there yet.  Return: as io_gpio_open(). */
 int generator_modbus_open(struct generator *g, const struct machine_config *c,
 			  struct interp_diag *diag);
+
+/* -- generator_plc.c ------------------------------------------------------- */
+
+/** generator_plc_write() - what the PLC is to be told next. */
+void generator_plc_write(struct generator *g);
+
+/** generator_plc_read() - take what it tells. */
+void generator_plc_read(struct generator *g);
 
 #endif /* IO_GENERATOR_OWN_H */

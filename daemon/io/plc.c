@@ -10,15 +10,16 @@
 #include <string.h>
 
 #define BEAT_MS		100		/* object 1017 begins with it */
-#define NTPDO		5
-#define CONDITION	NTPDO		/* EdmdCondition */
+#define NTPDO		6
+#define CONDITION	5		/* EdmdCondition */
+#define PULSE		6		/* EdmdPulse */
 #define STATE_OPERATES	0x05
 #define STATE_READY	0x7f		/* pre-operational */
 #define STATE_STOPPED	0x04
 #define FAULT_CODE	0xff00u		/* + number of the fault */
 
 static const uint16_t tpdo_id[NTPDO + 1] = { 0, 0x180, 0x280, 0x380, 0x480,
-					     0x500 };
+					     0x500, 0x680 };
 
 /*
  * The objects that the PLC may write, as an NMT reset sets them. What had been
@@ -48,9 +49,8 @@ void plc_beat(struct plc *p, uint16_t ms)
 
 /* -- From the PLC --------------------------------------------------------- */
 
-static void hear_request(struct plc *p, const struct can_msg *m)
+static void hear_rpdo(struct plc *p, const struct can_msg *m, int n)
 {
-	const uint8_t before = p->ask.command;
 	struct plc whole = { .ask = p->ask };
 
 	if (!p->operational)
@@ -58,7 +58,7 @@ static void hear_request(struct plc *p, const struct can_msg *m)
 	for (size_t i = 0; i < plc_nsignals; i++) {
 		const struct plc_signal *s = &plc_signal[i];
 
-		if (!s->asked || s->pdo != 1)
+		if (!s->asked || s->pdo != n)
 			continue;
 		if (!plc_take(&whole, s, can_get(m->data + s->byte,
 						 (int)plc_bytes(s->type)))) {
@@ -67,10 +67,28 @@ static void hear_request(struct plc *p, const struct can_msg *m)
 		}
 	}
 	p->ask = whole.ask;
+	p->heard[n]++;
+}
+
+static void hear_request(struct plc *p, const struct can_msg *m)
+{
+	const uint8_t before = p->ask.command;
+
+	hear_rpdo(p, m, 1);
 	if ((p->ask.command ^ before) & PLC_ALIVE) {
 		p->since_turn = 0;
 		p->alive = true;
 	}
+}
+
+static void hear_generator(struct plc *p, const struct can_msg *m)
+{
+	hear_rpdo(p, m, 2);
+}
+
+static void hear_pulse(struct plc *p, const struct can_msg *m)
+{
+	hear_rpdo(p, m, 3);
 }
 
 /* What it asked for is void, until its toggle turns. */
@@ -123,6 +141,8 @@ bool plc_receive(struct plc *p, const struct can_msg *m)
 	} kinds[] = {
 		{ CAN_NMT, 2, 0, hear_nmt },
 		{ CAN_RPDO1, 8, 1, hear_request },
+		{ CAN_RPDO2, 5, 1, hear_generator },
+		{ CAN_RPDO3, 8, 1, hear_pulse },
 		{ CAN_SDO_ASK, 8, 1, plc_sdo },
 		{ CAN_TPDO1, 8, 1, hear_twin },
 		{ CAN_HEARTBEAT, 1, 1, hear_twin },
@@ -158,7 +178,7 @@ void plc_period(struct plc *p)
 static struct can_msg tpdo(struct plc *p, int n)
 {
 	struct can_msg m = { .id = (uint16_t)(tpdo_id[n] + p->node),
-			     .len = n == CONDITION ? 5 : 8 };
+			     .len = 8 };
 
 	if (n == 1) {
 		p->toggle = !p->toggle;
@@ -205,8 +225,21 @@ static bool emergency_due(struct plc *p, struct can_msg *ret)
 	return !(p->emcy_id & PLC_EMCY_OFF);
 }
 
+/* The condition, behind the values that its number is of. */
+static size_t put_condition(struct plc *p, struct can_msg *ret)
+{
+	size_t n = 0;
+
+	if (p->sets)
+		ret[n++] = tpdo(p, PULSE);
+	ret[n++] = tpdo(p, CONDITION);
+	p->sent = p->tell.pulse.number;
+	return n;
+}
+
 /* One TPDO a period, so that the bus is not flooded at once.  But no M code is
- * told before what EdmdCondition says of it: that goes with EdmdStatus. */
+ * told before what EdmdCondition says of it: that goes with EdmdStatus, and in
+ * the period in which the generator is asked for something else. */
 static bool send_next(struct plc *p)
 {
 	if (p->send_in-- == 0) {
@@ -221,6 +254,7 @@ static bool send_next(struct plc *p)
 size_t plc_emit(struct plc *p, struct can_msg *ret)
 {
 	size_t n = 0;
+	bool due;
 
 	if (!p->booted) {
 		p->booted = true;
@@ -236,9 +270,11 @@ size_t plc_emit(struct plc *p, struct can_msg *ret)
 	if (p->answers)
 		ret[n++] = p->answer;
 	p->answers = false;
-	if (send_next(p)) {
-		if (p->next == 1)
-			ret[n++] = tpdo(p, CONDITION);
+	due = send_next(p);
+	if (p->operational && ((due && p->next == 1) ||
+			       p->sent != p->tell.pulse.number))
+		n += put_condition(p, &ret[n]);
+	if (due) {
 		ret[n++] = tpdo(p, p->next);
 		p->next = p->next == CONDITION - 1 ? 0 : (uint8_t)(p->next + 1);
 	}

@@ -23,6 +23,13 @@
 
 #define PLC_NAXES	8		/* X Y Z A B C U V */
 
+/* What a generator is asked for, and what it has: counts of PLC_PULSE_ROWS. */
+struct plc_pulse {
+	uint16_t number;		/* of what is asked; 0: of nothing */
+	uint8_t bits;			/* PLC_ASKED_ or PLC_TOLD_ */
+	uint16_t value[PLC_NPULSES];	/* UINT16_MAX: its own setting */
+};
+
 /* What edmd tells the PLC: whole numbers in the units of the table. */
 struct plc_tell {
 	uint8_t state;			/* enum shm_state */
@@ -41,6 +48,7 @@ struct plc_tell {
 					 * none */
 	uint16_t condition;		/* number of the one in force ... */
 	uint8_t letter;			/* ... ASCII; 0: none */
+	struct plc_pulse pulse;		/* the generator is asked for */
 };
 
 /* What the PLC asks for. */
@@ -54,6 +62,8 @@ struct plc_ask {
 	uint8_t mcode_done;		/* the M code it has carried out */
 	uint8_t axes_c;			/* their temperature, 0.25 degC; 0: not
 					 * told */
+	struct plc_pulse pulse;		/* that the generator has */
+	uint16_t pulse_fault;		/* its own; 0: none */
 };
 
 /* Flags of plc_tell, and bits of plc_ask.command and plc_ask.locks. */
@@ -72,8 +82,8 @@ struct plc_signal {
 	uint16_t index;
 	uint8_t sub;
 	enum plc_type type;
-	uint8_t pdo;			/* the TPDO or RPDO that it is in, 1 to
-					 * 5; 0: none */
+	uint8_t pdo;			/* the TPDO or RPDO that it is in; 0:
+					 * none */
 	uint8_t byte;			/* its first byte in that */
 	bool asked;			/* the PLC writes it */
 	uint16_t offset;		/* in struct plc_tell or plc_ask */
@@ -84,6 +94,7 @@ struct plc_signal {
 extern const struct plc_signal plc_signal[];
 extern const size_t plc_nsignals;
 
+#define PLC_NRPDO	4		/* from 1 on */
 #define PLC_HISTORY	8
 #define PLC_EMCY_OFF	0x80000000u
 
@@ -98,6 +109,9 @@ struct plc {
 	uint32_t beat_in, send_in;
 	struct plc_tell tell;
 	struct plc_ask ask;
+	bool sets;			/* the PLC sets the generator ... */
+	uint16_t sent;			/* ... number of what was sent last */
+	uint32_t heard[PLC_NRPDO];	/* frames that were taken */
 	bool operational, stopped;	/* NMT */
 	uint32_t since_turn;		/* cycles since the toggle turned */
 	bool alive;
@@ -132,8 +146,8 @@ bool plc_receive(struct plc *p, const struct can_msg *m);
  */
 size_t plc_emit(struct plc *p, struct can_msg *ret);
 
-#define PLC_EMITS	5		/* heartbeat, emergency, SDO answer, two
-					 * TPDOs */
+#define PLC_EMITS	6		/* heartbeat, emergency, SDO answer,
+					 * three TPDOs */
 
 /** plc_period() - once a period before the frames: time goes by. */
 void plc_period(struct plc *p);

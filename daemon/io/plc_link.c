@@ -65,16 +65,22 @@ int plc_link_open(struct plc_link *l, const struct machine_config *c,
 		{ (uint16_t)(CAN_SDO_ASK + node), 0x7ff },
 		{ (uint16_t)(CAN_TPDO1 + node), 0x7ff },
 		{ (uint16_t)(CAN_HEARTBEAT + node), 0x7ff },
+		{ (uint16_t)(CAN_RPDO2 + node), 0x7ff },
+		{ (uint16_t)(CAN_RPDO3 + node), 0x7ff },
 	};
+
+	size_t n = sizeof(hear) / sizeof(hear[0]);
 
 	*l = (struct plc_link) { .fd = -1, .before = 0xff };
 	if (!config_has_plc(c))
 		return 0;
 	plc_init(&l->plc, (uint8_t)node);
 	time_by(&l->plc, c);
+	l->plc.sets = config_generator_interface(c) == GENERATOR_PLC;
 	memcpy(l->interface, c->plc.interface, sizeof(l->interface));
+	/* The last two are of a generator that it sets. */
 	l->fd = can_socket_open(c->plc.interface, hear,
-				sizeof(hear) / sizeof(hear[0]));
+				l->plc.sets ? n : n - 2);
 	if (l->fd < 0)
 		return refuse(c, l->fd, diag);
 	can_socket_queue(l->fd, 2 * PLC_EMITS);

@@ -57,6 +57,10 @@ S(0x2000, 12, U16, TELL, condition, 5, 2, 0, 65535, "Condition", "", 1, \
   "number of the condition in force, as 120 of C120") \
 S(0x2000, 13, U8, TELL, letter, 5, 4, 0, 90, "ConditionLetter", "", 1, \
   "its letter in ASCII, as 67 for C; 0: none was called") \
+S(0x2000, 14, U16, TELL, pulse.number, 5, 5, 0, 65535, "Asked", "", 1, \
+  "number of what the generator is asked for; 0: of nothing") \
+S(0x2000, 15, U8, TELL, pulse.bits, 5, 7, 0, 255, "AskedBits", "", 1, "bits") \
+PLC_PULSE_ROWS(PLC_ASKED, S) \
 S(0x2100, 1, U8, ASK, command, 1, 0, 0, 255, "Command", "", 1, "bits") \
 S(0x2100, 2, U8, ASK, locks, 1, 1, 0, 31, "Interlocks", "", 1, \
   "bits, each 1 while all is well") \
@@ -67,11 +71,36 @@ S(0x2100, 4, U16, ASK, program, 1, 4, 0, 9999, "ProgramSelect", "", 1, \
 S(0x2100, 5, U8, ASK, mcode_done, 1, 6, 0, 255, "McodeDone", "", 1, \
   "M code that has been carried out; 0: none") \
 S(0x2100, 6, U8, ASK, axes_c, 1, 7, 0, 255, "AxisTemperature", "degC", 0.25, \
-  "of the axes, for [geometry] maps; 0: not told")
+  "of the axes, for [geometry] maps; 0: not told") \
+S(0x2101, 1, U16, ASK, pulse.number, 2, 0, 0, 65535, "InForce", "", 1, \
+  "`Asked`, once the generator has all of that") \
+S(0x2101, 2, U16, ASK, pulse_fault, 2, 2, 0, 65535, "GeneratorFault", "", 1, \
+  "number of its own fault; 0: none") \
+S(0x2101, 3, U8, ASK, pulse.bits, 2, 4, 0, 255, "ToldBits", "", 1, "bits") \
+PLC_PULSE_ROWS(PLC_TOLD, S)
 
 #define PLC_POSITION(S, sub, axis, pdo, byte) \
 S(0x2001, sub, I32, TELL, pos[(sub) - 1], pdo, byte, -2147483648, 2147483647, \
   "Position" axis, "pulses", 1, "target of axis " axis)
+
+/*
+ * P(S, id, i, name, unit, scale, help): value @i of a generator that the PLC
+ * sets, by enum interp_tech_id.
+ */
+#define PLC_PULSE_ROWS(P, S) \
+P(S, PEAK_A, 0, "Current", "A", 0.1, "peak current") \
+P(S, ON_US, 1, "OnTime", "us", 0.1, "on time") \
+P(S, OFF_US, 2, "OffTime", "us", 0.1, "off time") \
+P(S, IGNITION_V, 3, "Voltage", "V", 0.1, "open-circuit voltage")
+
+#define PLC_NPULSES	4
+
+#define PLC_ASKED(S, id, i, name, unit, scale, help) \
+S(0x2002, (i) + 1, U16, TELL, pulse.value[i], 6, 2 * (i), 0, 65535, \
+  "Asked" name, unit, scale, help "; all bits set: its own setting")
+#define PLC_TOLD(S, id, i, name, unit, scale, help) \
+S(0x2101, (i) + 4, U16, ASK, pulse.value[i], 3, 2 * (i), 0, 65535, \
+  "Told" name, unit, scale, help " of the generator")
 
 /* B(id, of, bit, name, help): bit @bit of the signal @of is PLC_@id in C. */
 #define PLC_BIT_ROWS(B) \
@@ -83,6 +112,10 @@ B(FAULTY,      "Flags", 4, "Faulty", "there is a fault; `Fault` tells which") \
 B(PUMP,        "Flags", 5, "Pump", "edmd asks for dielectric") \
 B(LOADED,      "Flags", 6, "Loaded", "a job is loaded or under way") \
 B(NEGATIVE,    "Flags", 7, "Negative", "the electrode is to be negative") \
+B(ASKED_NEGATIVE, "AskedBits", 0, "AskedNegative", \
+  "the electrode is to be negative") \
+B(ASKED_ISO,   "AskedBits", 1, "AskedIso", \
+  "pulses are to be timed from their ignition") \
 B(PERMIT,      "Command", 0, "Permit", "1: sparks and motion are allowed") \
 B(START,       "Command", 1, "Start", "rising edge: start, or go on") \
 B(HOLD,        "Command", 2, "Hold", "1: the machine is held") \
@@ -95,7 +128,10 @@ B(LEVEL,       "Interlocks", 1, "LevelOk", "1: dielectric covers the work") \
 B(TEMPERATURE, "Interlocks", 2, "TemperatureOk", \
   "1: the dielectric is neither too warm nor too cold") \
 B(FIRE,        "Interlocks", 3, "NoFire", "1: there is no fire") \
-B(WIRE,        "Interlocks", 4, "WireWhole", "1: the wire is whole")
+B(WIRE,        "Interlocks", 4, "WireWhole", "1: the wire is whole") \
+B(TOLD_NEGATIVE, "ToldBits", 0, "ToldNegative", "the electrode is negative") \
+B(TOLD_ISO,    "ToldBits", 1, "ToldIso", \
+  "pulses are timed from their ignition")
 
 /* F(id, by, pdo, name): a frame, and the CAN id that its node is added to. */
 #define PLC_FRAME_ROWS(F) \
@@ -104,7 +140,10 @@ F(0x280, TELL, 2, "EdmdJob") \
 F(0x380, TELL, 3, "EdmdPositionXY") \
 F(0x480, TELL, 4, "EdmdPositionZC") \
 F(0x500, TELL, 5, "EdmdCondition") \
-F(0x200, ASK,  1, "PlcRequest")
+F(0x680, TELL, 6, "EdmdPulse") \
+F(0x200, ASK,  1, "PlcRequest") \
+F(0x300, ASK,  2, "PlcGenerator") \
+F(0x400, ASK,  3, "PlcPulse")
 
 /*
  * O(index, sub, type, value, live, name)
@@ -134,9 +173,7 @@ O(0x1018, 0, U8, 3, FIXED, "Identity, highest sub-index") \
 O(0x1018, 1, U32, 0, FIXED, "Vendor") \
 O(0x1018, 2, U32, 0x65646d64, FIXED, "Product code") \
 O(0x1018, 3, U32, 1, FIXED, "Revision number") \
-O(0x1400, 0, U8, 2, FIXED, "RPDO1, highest sub-index") \
-O(0x1400, 1, U32, 0x200, PLUS_NODE, "RPDO1 COB-ID") \
-O(0x1400, 2, U8, 255, FIXED, "RPDO1 transmission type") \
+PLC_RPDO(O, 1, 0x1400, 0x200) \
 O(0x1600, 0, U8, 6, FIXED, "RPDO1 mapping, objects") \
 PLC_MAPPED(O, RPDO1, 0x1600, 1, 0x2100, 1, 8) \
 PLC_MAPPED(O, RPDO1, 0x1600, 2, 0x2100, 2, 8) \
@@ -144,11 +181,23 @@ PLC_MAPPED(O, RPDO1, 0x1600, 3, 0x2100, 3, 16) \
 PLC_MAPPED(O, RPDO1, 0x1600, 4, 0x2100, 4, 16) \
 PLC_MAPPED(O, RPDO1, 0x1600, 5, 0x2100, 5, 8) \
 PLC_MAPPED(O, RPDO1, 0x1600, 6, 0x2100, 6, 8) \
+PLC_RPDO(O, 2, 0x1401, 0x300) \
+PLC_RPDO(O, 3, 0x1402, 0x400) \
+O(0x1601, 0, U8, 3, FIXED, "RPDO2 mapping, objects") \
+PLC_MAPPED(O, RPDO2, 0x1601, 1, 0x2101, 1, 16) \
+PLC_MAPPED(O, RPDO2, 0x1601, 2, 0x2101, 2, 16) \
+PLC_MAPPED(O, RPDO2, 0x1601, 3, 0x2101, 3, 8) \
+O(0x1602, 0, U8, 4, FIXED, "RPDO3 mapping, objects") \
+PLC_MAPPED(O, RPDO3, 0x1602, 1, 0x2101, 4, 16) \
+PLC_MAPPED(O, RPDO3, 0x1602, 2, 0x2101, 5, 16) \
+PLC_MAPPED(O, RPDO3, 0x1602, 3, 0x2101, 6, 16) \
+PLC_MAPPED(O, RPDO3, 0x1602, 4, 0x2101, 7, 16) \
 PLC_TPDO(O, 1, 0x1800, 0x180) \
 PLC_TPDO(O, 2, 0x1801, 0x280) \
 PLC_TPDO(O, 3, 0x1802, 0x380) \
 PLC_TPDO(O, 4, 0x1803, 0x480) \
 PLC_TPDO(O, 5, 0x1804, 0x500) \
+PLC_TPDO(O, 6, 0x1805, 0x680) \
 O(0x1a00, 0, U8, 6, FIXED, "TPDO1 mapping, objects") \
 PLC_MAPPED(O, TPDO1, 0x1a00, 1, 0x2000, 1, 8) \
 PLC_MAPPED(O, TPDO1, 0x1a00, 2, 0x2000, 2, 8) \
@@ -165,13 +214,22 @@ PLC_MAPPED(O, TPDO3, 0x1a02, 2, 0x2001, 2, 32) \
 O(0x1a03, 0, U8, 2, FIXED, "TPDO4 mapping, objects") \
 PLC_MAPPED(O, TPDO4, 0x1a03, 1, 0x2001, 3, 32) \
 PLC_MAPPED(O, TPDO4, 0x1a03, 2, 0x2001, 6, 32) \
-O(0x1a04, 0, U8, 3, FIXED, "TPDO5 mapping, objects") \
+O(0x1a04, 0, U8, 5, FIXED, "TPDO5 mapping, objects") \
 PLC_MAPPED(O, TPDO5, 0x1a04, 1, 0x2000, 11, 16) \
 PLC_MAPPED(O, TPDO5, 0x1a04, 2, 0x2000, 12, 16) \
 PLC_MAPPED(O, TPDO5, 0x1a04, 3, 0x2000, 13, 8) \
-O(0x2000, 0, U8, 13, FIXED, "Machine, highest sub-index") \
+PLC_MAPPED(O, TPDO5, 0x1a04, 4, 0x2000, 14, 16) \
+PLC_MAPPED(O, TPDO5, 0x1a04, 5, 0x2000, 15, 8) \
+O(0x1a05, 0, U8, 4, FIXED, "TPDO6 mapping, objects") \
+PLC_MAPPED(O, TPDO6, 0x1a05, 1, 0x2002, 1, 16) \
+PLC_MAPPED(O, TPDO6, 0x1a05, 2, 0x2002, 2, 16) \
+PLC_MAPPED(O, TPDO6, 0x1a05, 3, 0x2002, 3, 16) \
+PLC_MAPPED(O, TPDO6, 0x1a05, 4, 0x2002, 4, 16) \
+O(0x2000, 0, U8, 15, FIXED, "Machine, highest sub-index") \
 O(0x2001, 0, U8, 8, FIXED, "Positions, highest sub-index") \
-O(0x2100, 0, U8, 6, FIXED, "PLC, highest sub-index")
+O(0x2002, 0, U8, 4, FIXED, "Pulse, highest sub-index") \
+O(0x2100, 0, U8, 6, FIXED, "PLC, highest sub-index") \
+O(0x2101, 0, U8, 7, FIXED, "Generator, highest sub-index")
 
 #define PLC_ERROR_AT(O, i) \
 O(0x1003, i, U32, 0, ERROR, "Error " #i)
@@ -181,6 +239,10 @@ O(0x1003, i, U32, 0, ERROR, "Error " #i)
 O(at, 0, U8, 2, FIXED, "TPDO" #n ", highest sub-index") \
 O(at, 1, U32, 0x40000000 + id, PLUS_NODE, "TPDO" #n " COB-ID") \
 O(at, 2, U8, 254, FIXED, "TPDO" #n " transmission type")
+#define PLC_RPDO(O, n, at, id) \
+O(at, 0, U8, 2, FIXED, "RPDO" #n ", highest sub-index") \
+O(at, 1, U32, id, PLUS_NODE, "RPDO" #n " COB-ID") \
+O(at, 2, U8, 255, FIXED, "RPDO" #n " transmission type")
 #define PLC_MAPPED(O, frame, at, i, index, sub, bits) \
 O(at, i, U32, index * 0x10000 + sub * 0x100 + bits, FIXED, \
   #frame " object " #i)

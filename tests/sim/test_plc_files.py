@@ -47,20 +47,23 @@ def pdos(od, first, count):
 def test_canopen_imports_the_eds():
     od = canopen.import_od(str(EDS), node_id=NODE)
     assert od.device_information.product_name == "edmd"
-    assert od[0x1400][1].default == 0x200 + NODE
-    assert [od[0x1800 + i][1].default & 0x7ff for i in range(5)] == \
-        [0x180 + NODE, 0x280 + NODE, 0x380 + NODE, 0x480 + NODE, 0x500 + NODE]
+    assert [od[0x1400 + i][1].default for i in range(3)] == \
+        [0x200 + NODE, 0x300 + NODE, 0x400 + NODE]
+    assert [od[0x1800 + i][1].default & 0x7ff for i in range(6)] == \
+        [0x180 + NODE, 0x280 + NODE, 0x380 + NODE, 0x480 + NODE, 0x500 + NODE,
+         0x680 + NODE]
     assert od[0x2100][3].max == 2000 and od[0x2100][3].writable
     assert not od[0x2000][1].writable
-    assert len(list(pdos(od, 0x1a00, 5))) == 5
+    assert len(list(pdos(od, 0x1a00, 6))) == 6
+    assert len(list(pdos(od, 0x1600, 3))) == 3
 
 
 def test_eds_and_dbc_have_the_same_signals_in_the_same_places():
     od = canopen.import_od(str(EDS), node_id=NODE)
     db = cantools.database.load_file(DBC)
     frames = {m.frame_id: m for m in db.messages}
-    assert len(frames) == 6
-    for first, com, count in ((0x1600, 0x1400, 1), (0x1a00, 0x1800, 5)):
+    assert len(frames) == 9
+    for first, com, count in ((0x1600, 0x1400, 3), (0x1a00, 0x1800, 6)):
         for i, mapped in enumerate(pdos(od, first, count)):
             frame = frames[od[com + i][1].default & 0x7ff]
             for at, bits, name in mapped:

@@ -11,6 +11,8 @@ struct refusal {
 	const char *found, *wanted;
 };
 
+#define BY_PLC	"[machine]\nbackend = null\n[plc]\ninterface = can1\n" \
+	"[generator]\ninterface = plc\n"
 #define MODBUS	"[machine]\nbackend = null\n[generator]\ninterface = modbus\n"
 
 static const struct refusal refusals[] = {
@@ -281,11 +283,34 @@ static const struct refusal refusals[] = {
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
 	  "fault_words = 1\n", 7, 0, "has a number without words",
 	  "1 no water, 2 too warm" },
-	{ MODBUS "modbus = /dev/ttyS0\n", 4, 0, "no field has a register",
+	{ MODBUS "modbus = /dev/ttyS0\n", 4, 0, "it reaches no field",
 	  "peak_a = register N" },
 	{ LINES_MACHINE "[generator]\ninterface = modbus\nmodbus = /dev/ttyS0\n"
 	  "peak_a = register 1\n", 0, 0, "generator.spark reaches nothing",
 	  "[gpio] spark" },
+	{ "[plc]\nm_before = 6\nm_redo = 6\n", 3, 0, "plc.m_redo: M6",
+	  "no way back leads over a change of the electrode" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = plc\n", 4, 0,
+	  "interface is plc and there is no PLC", "[plc] interface = can1" },
+	{ BY_PLC "[plc]\nnode = 96\n", 6, 0, "interface is plc and plc.node 96",
+	  "a node of 1 to 95" },
+	{ BY_PLC "sense = plc\n", 7, 0, "those take a round trip: it must be "
+	  "a line", "lines 5 6" },
+	{ BY_PLC "told_sparks = plc\n", 7, 0, "is a sum, and the PLC has no "
+	  "signal for it", "or plc, the PLC's own signal" },
+	{ BY_PLC "on_us = plc scale 0.1\n", 7, 0, "has a word after plc",
+	  "or plc, the PLC's own signal" },
+	{ BY_PLC "on_us = register 4\n", 7, 0, "the interface is not modbus",
+	  "or plc, the PLC's own signal" },
+	{ BY_PLC "peak_a = none\non_us = none\noff_us = none\n"
+	  "ignition_v = none\npolarity = none\niso = none\npump = none\n", 6,
+	  0, "interface is plc and it reaches no field", "peak_a = plc" },
+	{ LINES_MACHINE "[plc]\ninterface = can1\n[generator]\n"
+	  "interface = plc\n", 0, 0, "generator.spark reaches nothing",
+	  "[gpio] spark" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "peak_a = plc\n", 5, 0, "is by the PLC, and the interface is not plc",
+	  "lines 20 21 26" },
 	{ "[machine]\nbackend = null\n[generator]\nby_hand = on_us amps\n", 4,
 	  0, "generator.by_hand has \"amps\"", "peak_a on_us off_us" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"

@@ -204,6 +204,36 @@ static void one_that_lies_is_trouble_in_its_period(void **state)
 	unmake(&r);
 }
 
+/* The off time alone is on its way then. */
+static void what_it_loses_in_a_step_against_arcs_is_seen_at_once(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r, "told_peak_a = can 1011 byte 0 bits 8 scale 0.5\n"
+		 "told_off_us = can 1011 byte 1 bits 8\n");
+	ask(&r, 6);
+	r.out.pulse[INTERP_TECH_OFF_US] = 0;
+	period(&r);
+	tell(&r, 12, false);
+	period(&r);
+	r.out.power = true;
+	period(&r);
+	r.out.asked++;
+	r.out.pulse[INTERP_TECH_OFF_US] = 40;
+	period(&r);
+	tell(&r, 12, false);
+	period(&r);
+	assert_false(r.in.generator.trouble);
+	tell(&r, 24, false);
+	period(&r);
+	assert_true(r.in.generator.trouble);
+	assert_int_equal(r.usual.data[0], 0);
+	assert_true(log_has(&r, "peak_a was in force and is no more: asked 6, "
+				"told 12"));
+	unmake(&r);
+}
+
 static void one_that_refuses_is_trouble_in_confirm_s(void **state)
 {
 	struct rig r;
@@ -378,6 +408,8 @@ static void its_own_fault_is_trouble_until_it_is_gone_and_reset(void **state)
 
 /* -- What of a condition is delivered -------------------------------------- */
 
+#define BY_PLC	"spark = 9\nwatchdog_by = its own\nestop_by = its own\n" \
+	"[plc]\ninterface = can1\n[generator]\ninterface = plc\n"
 #define MODBUS	"spark = 9\nwatchdog_by = its own\nestop_by = its own\n" \
 	"[generator]\ninterface = modbus\nmodbus = /dev/ttyS0\n" \
 	"peak_a = register 1 bits 8 scale 0.1\n" \
@@ -429,6 +461,16 @@ static const struct {
 	{ MODBUS, INTERP_TECH_IGNITION_V, 180, "", "" },
 	{ MODBUS, INTERP_TECH_POLARITY, -1, "", "" },
 	{ MODBUS, INTERP_TECH_ISO, 1, "iso 1", "[generator] iso" },
+	{ BY_PLC, INTERP_TECH_PEAK_A, 6, "", "" },
+	{ BY_PLC, INTERP_TECH_ON_US, 8, "", "" },
+	{ BY_PLC, INTERP_TECH_OFF_US, 20, "", "" },
+	{ BY_PLC, INTERP_TECH_OFF_US, 6554, "off_us 6554 us",
+	  "0.1 to 6553.4 us" },
+	{ BY_PLC, INTERP_TECH_IGNITION_V, 180, "", "" },
+	{ BY_PLC, INTERP_TECH_POLARITY, -1, "", "" },
+	{ BY_PLC, INTERP_TECH_ISO, 1, "", "" },
+	{ BY_PLC "iso = none\n", INTERP_TECH_ISO, 1, "iso 1",
+	  "[generator] iso" },
 };
 
 static void each_field_reaches_it_or_is_refused(void **state)
@@ -477,6 +519,7 @@ int main(void)
 		cmocka_unit_test(what_changes_is_sent_at_once_and_all_of_it_again),
 		cmocka_unit_test(what_it_tells_is_in_force_when_it_agrees),
 		cmocka_unit_test(one_that_lies_is_trouble_in_its_period),
+		cmocka_unit_test(what_it_loses_in_a_step_against_arcs_is_seen_at_once),
 		cmocka_unit_test(one_that_refuses_is_trouble_in_confirm_s),
 		cmocka_unit_test(one_that_is_silent_is_trouble_in_silent_ms),
 		cmocka_unit_test(one_that_restarts_is_trouble),

@@ -4,11 +4,7 @@
  * before the slave has the condition of the place, none after it is known to
  * have another
  */
-#include "config_help.h"
-#include "cycle_help.h"
-#include "seed.h"
-
-#include "generator_own.h"
+#include "generator_help.h"
 
 #include <arpa/inet.h>
 #include <modbus.h>
@@ -100,126 +96,44 @@ static void slave_end(struct slave *s)
 
 /* -- A cycle with that generator ------------------------------------------- */
 
-struct shop {
-	struct slave slave;
-	struct machine_config c;
-	struct io_machine axes;		/* what the generator stands before */
-	struct rig r;
-	uint64_t sparks, waits;
-};
-
 static const char layout[] =
 	"peak_a = register 0 scale 0.1\non_us = register 1 scale 0.1\n"
 	"off_us = register 2 scale 0.1\nignition_v = register 3\n"
 	"polarity = register 5 bit 0\n";
 
-static void no_read(void *self, struct io_inputs *in)
-{
-	(void)self;
-	(void)in;
-}
-
-static void no_write(void *self, const struct io_outputs *out)
-{
-	(void)self;
-	(void)out;
-}
-
-static void no_close(void *self)
-{
-	(void)self;
-}
-
-static void read_machine(struct shop *s)
-{
-	char text[700];
-	struct interp_diag d;
-
-	snprintf(text, sizeof(text), "[machine]\nbackend = null\n"
-		"period_us = 1000\n[generator]\ninterface = modbus\n"
-		"modbus = 127.0.0.1:%d\nmodbus_every_ms = 2\n"
-		"modbus_timeout_ms = 400\nsilent_ms = 60000\n"
-		"confirm_s = 600\npolarity_ms = 3\n%s", s->slave.port, layout);
-
-	assert_int_equal(read_text(text, &s->c, &d), 0);
-}
-
-static struct interp_tech tech_of(double peak_a, double off_us, double polarity)
-{
-	struct interp_tech t;
-
-	interp_tech_clear(&t);
-	t.v[INTERP_TECH_PEAK_A] = peak_a;
-	t.v[INTERP_TECH_ON_US] = 8;
-	t.v[INTERP_TECH_OFF_US] = off_us;
-	t.v[INTERP_TECH_IGNITION_V] = 180;
-	t.v[INTERP_TECH_POLARITY] = polarity;
-	return t;
-}
-
-static void load_job(struct shop *s, int cuts)
-{
-	/* The first one is C200 of the paper. */
-	const struct interp_tech t[] = {
-		tech_of(6, 20, NAN), tech_of(12, 50, -1), tech_of(9, 20, -1),
-	};
-	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
-	struct cycle_config k = usual_config(), of_file;
-	struct interp_diag d;
-
-	config_cycle(&s->c, &of_file);
-	k.asking = of_file.asking;
-	k.asking.limited = true;
-	for (int i = 0; i < cuts; i++) {
-		const struct interp_build_word w = {
-			.line = 1, .feed_mm_s = 10, .tech = &t[i % 3],
-			.cond_letter = 'C', .cond_number = 200,
-		};
-		double end[INTERP_NAXES];
-
-		memcpy(end, interp_build_here(b), sizeof(end));
-		end[INTERP_Z] = -0.2 * (i + 1);
-		assert_int_equal(interp_build_line(b, end, &w, &d), 0);
-	}
-	rig_load(&s->r, b, &k);
-	assert_int_equal(tell(&s->r, CYCLE_START), ANSWER_DONE);
-}
+static struct slave slave;
 
 static void shop_open(struct shop *s, int cuts)
 {
 	struct interp_diag d = { .line = 0 };
+	struct cycle_config k;
 	struct generator *g;
+	char text[700];
 
-	memset(s, 0, sizeof(*s));
-	slave_begin(&s->slave);
-	read_machine(s);
-	s->axes = (struct io_machine) { .read = no_read, .write = no_write,
-					.close = no_close };
-	g = generator_attach(&s->axes, &s->c, -1);
-	assert_non_null(g);
+	slave_begin(&slave);
+	snprintf(text, sizeof(text), "[machine]\nbackend = null\n"
+		"period_us = 1000\n[generator]\ninterface = modbus\n"
+		"modbus = 127.0.0.1:%d\nmodbus_every_ms = 2\n"
+		"modbus_timeout_ms = 400\nsilent_ms = 60000\n"
+		"confirm_s = 600\npolarity_ms = 3\n%s", slave.port, layout);
+	g = shop_generator(s, text);
 	assert_int_equal(generator_modbus_open(g, &s->c, &d), 0);
-	load_job(s, cuts);
+	k = shop_config(s);
+	shop_load(s, cuts, &k);
 }
 
 static void shop_close(struct shop *s)
 {
 	rig_free(&s->r);
 	s->axes.close(s->axes.self);
-	slave_end(&s->slave);
-}
-
-static const struct interp_tech *place_of(const struct shop *s)
-{
-	const struct cycle *c = &s->r.c;
-
-	return &c->cursor.p.conds[c->cursor.seg.cond].tech;
+	slave_end(&slave);
 }
 
 /* Nobody writes it while there are sparks: it is the condition of the place. */
 static void check_spark(struct shop *s)
 {
 	const struct interp_tech *t = place_of(s);
-	const uint16_t *has = s->slave.map->tab_registers;
+	const uint16_t *has = slave.map->tab_registers;
 
 	if (!s->r.out.power)
 		return;
@@ -253,10 +167,10 @@ static void c200_reaches_it_whole_before_the_first_spark(void **state)
 	shop_open(&s, 1);
 	for (int i = 0; i < TURNS_MOST && !s.sparks; i++)
 		turn(&s);
-	assert_int_equal(s.slave.map->tab_registers[0], 60);
-	assert_int_equal(s.slave.map->tab_registers[1], 80);
-	assert_int_equal(s.slave.map->tab_registers[2], 200);
-	assert_int_equal(s.slave.map->tab_registers[3], 180);
+	assert_int_equal(slave.map->tab_registers[0], 60);
+	assert_int_equal(slave.map->tab_registers[1], 80);
+	assert_int_equal(slave.map->tab_registers[2], 200);
+	assert_int_equal(slave.map->tab_registers[3], 180);
 	assert_true(s.waits > 0);
 	shop_close(&s);
 }
@@ -270,7 +184,7 @@ static void no_spark_has_another_condition_however_late_it_is(void **state)
 	shop_open(&s, 30);
 	for (int i = 0; i < TURNS_MOST && s.r.c.loaded; i++) {
 		if (rnd(&seed) % 50 == 0)
-			s.slave.late_us = (int)(rnd(&seed) % 8000);
+			slave.late_us = (int)(rnd(&seed) % 8000);
 		turn(&s);
 	}
 	assert_int_equal(s.r.c.outcome, OUTCOME_DONE);
@@ -294,11 +208,11 @@ static void what_it_refuses_never_sparks_and_is_a_fault(void **state)
 
 	(void)state;
 	shop_open(&s, 3);
-	s.slave.refuses = 2;
+	slave.refuses = 2;
 	until_fault(&s);
 	assert_int_equal(s.sparks, 0);
 	/* Once it takes it, an operator goes on. */
-	s.slave.refuses = -1;
+	slave.refuses = -1;
 	s.r.in.generator.trouble = false;
 	assert_int_equal(tell(&s.r, CYCLE_RESET), ANSWER_DONE);
 	for (int i = 0; i < 50; i++)
@@ -318,7 +232,7 @@ static void one_that_loses_its_values_ends_the_sparks(void **state)
 	shop_open(&s, 1);
 	for (int i = 0; i < TURNS_MOST && !s.sparks; i++)
 		turn(&s);
-	s.slave.map->tab_registers[0] = 0;
+	slave.map->tab_registers[0] = 0;
 	/* What it tells is the evidence. */
 	for (int i = 0; i < TURNS_MOST && !s.r.in.generator.trouble; i++) {
 		s.axes.read(s.axes.self, &s.r.in);

@@ -455,7 +455,7 @@ static void tpdos_go_round_with_what_is_told(void **state)
 				continue;
 			here++;
 			seen[m->id >> 8]++;
-			assert_int_equal(m->len, m->id >> 8 == 5 ? 5 : 8);
+			assert_int_equal(m->len, 8);
 			if (m->id == 0x500 + NODE) {
 				assert_int_equal(can_get(m->data, 2), 3);
 				assert_int_equal(can_get(m->data + 2, 2), 120);
@@ -523,6 +523,34 @@ static void an_m_code_is_told_behind_its_electrode(void **state)
 			}
 		}
 		assert_true(told);
+	}
+}
+
+/* Values, then their number, and both in the period of the change. */
+static void what_a_generator_is_asked_for_is_sent_at_once(void **state)
+{
+	struct can_msg out[PLC_EMITS];
+	struct plc p = working();
+
+	(void)state;
+	p.sets = true;
+	for (int i = 1; i < 100; i++) {
+		uint32_t current = 0, number = 0;
+
+		p.tell.pulse = (struct plc_pulse) {
+			.number = (uint16_t)(i / 7 + 1), .bits = PLC_ASKED_ISO,
+			.value = { (uint16_t)(i / 7 + 60) }
+		};
+		for (size_t k = 0, n = plc_emit(&p, out); k < n; k++) {
+			if (out[k].id == 0x680 + NODE) {
+				current = can_get(out[k].data, 2);
+			} else if (out[k].id == 0x500 + NODE) {
+				number = can_get(out[k].data + 5, 2);
+				assert_int_equal(current, number + 59);
+				assert_int_equal(out[k].data[7], 2);
+			}
+		}
+		assert_true(i % 7 || number == p.tell.pulse.number);
 	}
 }
 
@@ -657,7 +685,7 @@ static void what_cannot_be_is_aborted_with_its_code(void **state)
 		bool operational;
 	} asks[] = {
 		{ 0x40, OBJECT(0x3000, 0), 0, 0x06020000, true },
-		{ 0x40, OBJECT(0x2000, 14), 0, 0x06090011, true },
+		{ 0x40, OBJECT(0x2000, 16), 0, 0x06090011, true },
 		{ 0x40, OBJECT(0x1018, 4), 0, 0x06090011, true },
 		{ 0x2f, OBJECT(0x3000, 0), 1, 0x06020000, false },
 		{ 0x2f, OBJECT(0x2100, 7), 1, 0x06090011, false },
@@ -794,6 +822,7 @@ int main(void)
 		cmocka_unit_test(tpdos_go_round_with_what_is_told),
 		cmocka_unit_test(a_round_takes_four_periods),
 		cmocka_unit_test(an_m_code_is_told_behind_its_electrode),
+		cmocka_unit_test(what_a_generator_is_asked_for_is_sent_at_once),
 		cmocka_unit_test(tpdos_are_sent_when_operational_only),
 		cmocka_unit_test(every_object_of_the_table_can_be_read),
 		cmocka_unit_test(the_plc_sets_the_time_of_the_heartbeat),
