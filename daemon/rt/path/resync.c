@@ -171,19 +171,21 @@ static void note_moves(struct cycle *c, const struct io_inputs *in)
 			  (escape_is_out(&c->escape) ? moved : 0);
 }
 
-/* What moves an axis without power is not its target. */
+/* Where the path rests, what moves an axis without power is not its target. */
 static void look_at_moves(struct cycle *c, const struct io_inputs *in)
 {
 	struct resync *r = &c->resync;
+	const double mm = place_mm(c);
 
 	if (in->starting || !c->comp.begun)
 		return;
-	if (r->unseen || (r->stood && !in->axes_off))
+	if (r->unseen || (r->rested && !in->axes_off))
 		memcpy(r->seen, in->actual, sizeof(r->seen));
-	else if (c->loaded && !in->axes_off && has_moved(r, in))
-		note_moves(c, in);
+	r->rested = in->axes_off && mm == r->looked_mm;
 	r->unseen = false;
-	r->stood = in->axes_off;
+	r->looked_mm = mm;
+	if (c->loaded && !r->rested && has_moved(r, in))
+		note_moves(c, in);
 }
 
 /* A program is compiled from where the machine stands.  Axes without power
