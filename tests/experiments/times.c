@@ -214,11 +214,11 @@ static void compare(const struct job *job, const struct sample *t, int n)
 	    length_eta_measure(&way, &job->program) < 0)
 		fail("forecast", f.why_not ? f.why_not : "no memory");
 	for (int i = 0; i < n; i++) {
-		struct eta_told told;
+		struct eta_told told, news;
 
 		eta_look(&eta, t[i].far_mm, t[i].job_s);
 		eta_tell(&eta, &told);
-		by_time.rose += eta_rose(&eta);
+		by_time.rose += eta_rose(&eta, &news);
 		if (!counts(t[i].job_s, all_s))
 			continue;
 		mark(&by_time, told.left_s, all_s - t[i].job_s);

@@ -112,7 +112,7 @@ export const zh: Record<Word, string> = {
 	"jobs.resume.sure": "机床确实停在所显示的位置：{axes}",
 	"jobs.front": "{name}：排到最前", "jobs.back": "{name}：排到最后", "jobs.clear": "清空等待队列",
 	"jobs.total": "全部需要 {time}；若不停顿，{at} 结束。", "jobs.untold": "另有 {n} 个时间未知。",
-	"jobs.search": "名称、日期、T3……", "jobs.nofound": "没有符合的作业。", "jobs.totals": "合计", "jobs.days": "按日", "jobs.months": "按月",
+	"jobs.search": "名称、日期、T3……", "jobs.nofound": "没有符合的任务。", "jobs.totals": "合计", "jobs.days": "按日", "jobs.months": "按月",
 	"jobs.day": "日", "jobs.month": "月", "jobs.eroding": "放电加工", "jobs.text": "程序文本",
 	"text.before": "前面的行", "text.after": "后面的行", "text.line": "显示的首行",
 	"jobs.ahead": "{name}：提前", "jobs.behind": "{name}：推后",
