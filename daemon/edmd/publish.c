@@ -266,6 +266,7 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 	memcpy(s->off, at.off, sizeof(s->off));
 	s->sure_mm = l->cycle.resync.sure_mm;
 	memcpy(s->moved_mm, l->cycle.resync.moved_mm, sizeof(s->moved_mm));
+	memcpy(s->seen, l->cycle.resync.seen, sizeof(s->seen));
 	memcpy(s->moved_way, l->cycle.resync.moved_way, sizeof(s->moved_way));
 	s->moved_beside = (uint8_t)l->cycle.resync.moved_beside;
 	memcpy(s->home_shift, at.shift, sizeof(s->home_shift));

@@ -155,6 +155,7 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 	memcpy(past.depth.cut.from, s->depth_from, sizeof(s->depth_from));
 	memcpy(past.depth.cut.way, s->depth_way, sizeof(s->depth_way));
 	memcpy(past.moved_mm, s->moved_mm, sizeof(past.moved_mm));
+	memcpy(past.seen, s->seen, sizeof(past.seen));
 	memcpy(past.moved_way, s->moved_way, sizeof(past.moved_way));
 	memcpy(past.pos, s->pos, sizeof(past.pos));
 	memcpy(past.shift, s->shift, sizeof(past.shift));

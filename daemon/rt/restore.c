@@ -124,6 +124,8 @@ enum cycle_restored cycle_restore(struct cycle *c,
 	for (int i = 0; i < INTERP_NAXES; i++)
 		if (isfinite(past->moved_mm[i]))
 			c->resync.moved_mm[i] = past->moved_mm[i];
+	memcpy(c->resync.seen, past->seen, sizeof(past->seen));
+	c->resync.unseen = false;
 	memcpy(c->resync.moved_way, past->moved_way, sizeof(past->moved_way));
 	c->resync.moved_beside = past->moved_beside;
 	c->resync.sure_beside = escape_is_out(&c->escape);

@@ -18,6 +18,7 @@
 struct cycle_past {
 	double far_mm, back_mm;
 	double sure_mm, moved_mm[INTERP_NAXES];	/* resync.h */
+	int32_t seen[INTERP_NAXES];
 	int8_t moved_way[INTERP_NAXES];
 	uint32_t moved_beside;
 	int32_t pos[INTERP_NAXES];	/* where the axes were sent, pulses */

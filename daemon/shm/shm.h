@@ -50,7 +50,7 @@
 #include <ck_ring.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	16
+#define SHM_LAYOUT	17
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NGENERATOR	6		/* values of a generator */
 #define SHM_NTOLD	15		/* what it tells: PROCESS_NTOLD */
@@ -153,6 +153,7 @@ struct shm_snapshot {
 	int32_t off[SHM_NAXES];		/* they stand beside that, pulses */
 	double sure_mm;			/* the place where they last did not */
 	double moved_mm[SHM_NAXES];	/* and where each moved last */
+	int32_t seen[SHM_NAXES];	/* ... to there, pulses */
 	int8_t moved_way[SHM_NAXES];	/* ... in this direction; 0: none */
 	int8_t toward[SHM_NAXES];
 	int8_t limit_side[SHM_NAXES];	/* of the switches in `limit` */

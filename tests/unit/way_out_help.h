@@ -389,6 +389,7 @@ static void killed(struct world *w)
 	struct axis_state s;
 
 	memcpy(past.moved_mm, w->cycle.resync.moved_mm, sizeof(past.moved_mm));
+	memcpy(past.seen, w->cycle.resync.seen, sizeof(past.seen));
 	memcpy(past.moved_way, w->cycle.resync.moved_way,
 	       sizeof(past.moved_way));
 	memcpy(past.pos, w->cycle.out.target, sizeof(past.pos));
