@@ -296,16 +296,52 @@ static void a_way_back_that_was_held_ends_before_a_retract(void **st)
 	}
 }
 
+/* On a shallow path the place where the path has it is far behind. */
+static void an_axis_that_springs_back_is_met_on_a_shallow_path(void **st)
+{
+	const double end[INTERP_NAXES] = { 8, 0.8 };
+
+	(void)st;
+	for (int springs = 0; springs <= 30; springs += 10) {
+		struct world w;
+		struct axis *y = &w.axis[INTERP_Y];
+		struct interp_build *b;
+
+		world_init(&w, false);
+		b = begin(INTERP_SIMULTANEOUS);
+		line(b, end);
+		w.m = finish(b);
+		world_start(&w);
+		y->wall = 400;
+		y->springs = springs;
+		assert_int_equal(ask(&w, CYCLE_START, 0), ANSWER_DONE);
+		while (w.cycle.state != STATE_FAULT)
+			period(&w);
+		run_for(&w, 0.5);
+		assert_int_equal(y->at, 400 - springs);
+		assert_int_equal(ask(&w, CYCLE_RESET, 0), ANSWER_DONE);
+		run_for(&w, 0.3);
+		look_anew(&w);
+		assert_int_equal(ask(&w, CYCLE_RETRACT, 0.05), ANSWER_DONE);
+		stands(&w);
+		assert_int_equal(y->pressed, 0);
+		assert_int_equal(y->at, w.cycle.out.target[INTERP_Y]);
+		assert_int_equal(w.cycle.state, STATE_HOLD);
+		world_free(&w);
+	}
+}
+
 /* Nobody knows what is in the way there; without the job an axis is free. */
 static void an_axis_that_was_moved_far_by_hand_is_not_driven_back(void **st)
 {
 	(void)st;
-	for (int lines = 0; lines < 2; lines++) {
+	for (int n = 0; n < 4; n++) {
+		const bool lines = n & 1;
 		struct world w;
 
 		world_make(&w, lines);
 		stop(&w, BY_ESTOP);
-		w.axis[INTERP_Y].at += 700;
+		w.axis[INTERP_Y].at += n & 2 ? -700 : 700;
 		run_for(&w, 0.3);
 		for (int i = 0; i < 3; i++) {
 			const int32_t x = w.axis[INTERP_X].at;
@@ -399,6 +435,7 @@ int main(void)
 		cmocka_unit_test(every_stop_has_a_way_out_by_every_verb),
 		cmocka_unit_test(an_axis_blocked_before_its_path_turns_is_met_before_that),
 		cmocka_unit_test(a_way_back_that_was_held_ends_before_a_retract),
+		cmocka_unit_test(an_axis_that_springs_back_is_met_on_a_shallow_path),
 		cmocka_unit_test(an_axis_that_was_moved_far_by_hand_is_not_driven_back),
 		cmocka_unit_test(without_power_a_verb_is_refused_and_its_return_starts_nothing),
 	};

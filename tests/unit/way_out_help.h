@@ -29,7 +29,8 @@ struct axis {
 					 * below floor */
 	int32_t pressed;		/* pulses that it was sent beyond one,
 					 * the most, since the last look */
-	bool clips, sto;
+	int32_t springs;		/* back from the wall without power */
+	bool clips, sto, had_power;
 	/* A drive follows so many periods late, and goes 1 / (1 + tau) of the
 	 * way that is left in each: */
 	int delay;
@@ -105,11 +106,15 @@ static void follow(struct axis *a, uint32_t n)
 {
 	a->asked[n % DELAY_MAX] = a->target;
 	if (a->status != 0x1037) {
+		if (a->had_power && a->at == a->wall)
+			a->at -= a->springs;
+		a->had_power = false;
 		for (int i = 0; i < DELAY_MAX; i++)
 			a->asked[i] = a->at;
 		a->place = a->at;
 		return;
 	}
+	a->had_power = true;
 	a->place += (a->asked[(n - (uint32_t)a->delay) % DELAY_MAX] -
 		     a->place) / (1 + a->tau);
 	a->place = fmin(fmax(a->place, a->floor), a->wall);

@@ -11,9 +11,6 @@
 
 #define NEAR_PULSES	5		/* an axis that holds its place moves
 					 * by less */
-#define MARGIN_MM	0.1		/* beyond sure_mm: an axis is not seen
-					 * to be off before it is NEAR_PULSES
-					 * off */
 #define POINTS_MS	1000		/* of the search, in a ms of a period */
 
 static int32_t plus(int32_t a, int32_t b)
@@ -215,17 +212,24 @@ static int32_t stands_at(const struct cycle *c, int i)
 	return plus(comp_pulses(&c->comp.axis[i]), c->resync.off[i]);
 }
 
-/* Was axis @i blocked, and in which direction? */
+/* What axis @i may have moved by itself, pulses. */
+static int64_t by_itself(const struct cycle *c, int i)
+{
+	return (int64_t)c->config.resync.max[i] + c->resync.ran_on[i] +
+	       NEAR_PULSES;
+}
+
+/* Was axis @i blocked, and in which direction?  Without power it may spring
+ * back; what goes far was pushed. */
 static bool seek_axis(const struct cycle *c, struct resync *r, int i)
 {
 	const int beyond = r->off[i] < 0 ? 1 : -1;
+	const int32_t went = minus(stands_at(c, i), r->seen[i]);
 
 	r->way[i] = r->slips >> i & 1 || r->moved_way[i] == 0 ? beyond :
 		    r->moved_way[i];
-	if (r->way[i] != beyond &&
-	    r->way[i] * minus(stands_at(c, i), r->seen[i]) > NEAR_PULSES)
-		return false;
-	return abs(r->off[i]) > NEAR_PULSES;
+	return abs(r->off[i]) > NEAR_PULSES && abs(went) <= by_itself(c, i) &&
+	       (r->way[i] == beyond || r->way[i] * went <= NEAR_PULSES);
 }
 
 void resync_search(struct cycle *c)
@@ -244,8 +248,6 @@ void resync_search(struct cycle *c)
 	if (r->seek == 0)
 		return;
 	r->toward = sure_mm > place_mm(c) ? 1 : -1;
-	r->until_mm = r->seek & r->slips ? r->toward * (double)INFINITY :
-		      sure_mm + r->toward * MARGIN_MM;
 	r->scout = c->cursor;
 	r->beside = c->escape;
 	interp_cursor_aim(&r->scout, r->toward * 1e9);
@@ -282,11 +284,9 @@ static double scout_mm(const struct resync *r)
 
 static bool scout_step(const struct cycle *c, struct resync *r)
 {
-	const bool on = escape_is_out(&r->beside) ?
-			escape_scout(&r->beside, r->toward) :
-			step_on_path(c, &r->scout);
-
-	return on && r->toward * (r->until_mm - scout_mm(r)) >= 0;
+	return escape_is_out(&r->beside) ?
+	       escape_scout(&r->beside, r->toward) :
+	       step_on_path(c, &r->scout);
 }
 
 /* One lattice point; @left: from the path to where the axis stands. */
@@ -312,8 +312,6 @@ static void look_for(struct resync *r, int i, int64_t left)
 static void look_behind(const struct cycle *c, struct resync *r, int i,
 			int64_t left)
 {
-	const int64_t far = llabs(left) - c->config.resync.max[i] -
-			    r->ran_on[i] - NEAR_PULSES;
 	const uint32_t bit = 1u << i;
 
 	if (!(r->asked & bit))
@@ -322,7 +320,7 @@ static void look_behind(const struct cycle *c, struct resync *r, int i,
 	if (r->passed & r->before & bit) {
 		r->met |= bit;
 		r->seek &= ~bit;
-	} else if (far > r->left[i]) {
+	} else if (llabs(left) > r->left[i] + by_itself(c, i)) {
 		r->seek &= ~bit;
 	}
 }
@@ -351,9 +349,7 @@ static enum resync_answer judge(const struct cycle *c)
 	const struct resync *r = &c->resync;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
-		if (!(r->met >> i & 1) && llabs(r->off[i]) >
-		    (int64_t)c->config.resync.max[i] + r->ran_on[i] +
-		    NEAR_PULSES)
+		if (!(r->met >> i & 1) && llabs(r->off[i]) > by_itself(c, i))
 			return RESYNC_TOO_FAR;
 	return RESYNC_DONE;
 }

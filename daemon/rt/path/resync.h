@@ -16,7 +16,7 @@
  *    axis where it stands.  So it is never sent on toward what blocked it.
  * 2. What is then left to an axis goes off on a straight line, slowly.
  *
- * The place of step 1 is searched for between the place of the path and
+ * The place of step 1 is searched for from the place of the path toward
  * sure_mm, the last place where all axes were where they were sent; a path that
  * turns round passes a blocked axis, too, which is no such place.  While an
  * axis was blocked, it did not move, and the path may have turned, even to and
@@ -25,11 +25,12 @@
  * the path, on its way there, led the axis on in this direction: farther back
  * it leads away from what blocked the axis.  A motor that loses the pulses that
  * it cannot go follows the path back; it was blocked in the direction in which
- * pulses are missing, and the place may be in front of sure_mm.
+ * pulses are missing.  What springs back without power is behind sure_mm: on a
+ * shallow path, far behind.
  *
- * An axis that went on by itself was not blocked, nor was one that the path
- * leads away from by more than max.  It is taken back by step 2, but not
- * farther than max.
+ * An axis that went on by itself was not blocked, nor was one that was pushed
+ * farther than max, or that the path leads away from by more than max.  It is
+ * taken back by step 2, but not farther than max.
  *
  * Units: pulses of the drives; mm along the path.  Threads: RT-safe.
  */
@@ -87,7 +88,6 @@ struct resync {
 	int64_t left[INTERP_NAXES];	/* from the path to where it stands, as
 					 * it was asked first */
 	int toward;			/* +1 or -1, along the path */
-	double until_mm;
 	struct interp_cursor scout;
 	struct escape beside;
 	/* The straight line: */
