@@ -268,6 +268,7 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 	memcpy(s->moved_mm, l->cycle.resync.moved_mm, sizeof(s->moved_mm));
 	memcpy(s->seen, l->cycle.resync.seen, sizeof(s->seen));
 	memcpy(s->moved_way, l->cycle.resync.moved_way, sizeof(s->moved_way));
+	s->adrift = (uint8_t)l->cycle.resync.adrift;
 	s->moved_beside = (uint8_t)l->cycle.resync.moved_beside;
 	memcpy(s->home_shift, at.shift, sizeof(s->home_shift));
 	memcpy(s->toward, at.toward, sizeof(s->toward));

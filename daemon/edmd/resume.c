@@ -126,7 +126,7 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 	struct cycle_past past = {
 		.far_mm = isfinite(s->far_mm) ? s->far_mm : s->place_mm,
 		.back_mm = s->back_mm, .sure_mm = s->sure_mm,
-		.moved_beside = s->moved_beside,
+		.moved_beside = s->moved_beside, .adrift = s->adrift,
 		.found_once = s->found_once, .found_twice = s->found_twice,
 		.depth = {
 			.cut.far_mm = s->depth_far_mm,

@@ -128,6 +128,7 @@ enum cycle_restored cycle_restore(struct cycle *c,
 	c->resync.unseen = false;
 	memcpy(c->resync.moved_way, past->moved_way, sizeof(past->moved_way));
 	c->resync.moved_beside = past->moved_beside;
+	c->resync.adrift = past->adrift;
 	c->resync.sure_beside = escape_is_out(&c->escape);
 	c->totals = past->totals;
 	c->depth = past->depth;

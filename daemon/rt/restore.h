@@ -20,7 +20,7 @@ struct cycle_past {
 	double sure_mm, moved_mm[INTERP_NAXES];	/* resync.h */
 	int32_t seen[INTERP_NAXES];
 	int8_t moved_way[INTERP_NAXES];
-	uint32_t moved_beside;
+	uint32_t moved_beside, adrift;
 	int32_t pos[INTERP_NAXES];	/* where the axes were sent, pulses */
 	int32_t shift[INTERP_NAXES], found[2][INTERP_NAXES];	/* probe.h */
 	uint32_t found_once, found_twice;

@@ -169,6 +169,7 @@ struct shm_snapshot {
 	uint8_t homed;			/* bit per axis */
 	uint8_t moved_beside;		/* bit per axis: `moved_mm` is beside
 					 * the path */
+	uint8_t adrift;			/* ... it was blocked, or lagged */
 	bool has_origin;
 	bool confirmed;			/* what the stand asks for is done */
 	bool depth_counts, depth_met;	/* for the next edmd: struct depth */

@@ -331,6 +331,39 @@ static void an_axis_that_springs_back_is_met_on_a_shallow_path(void **st)
 	}
 }
 
+/* A brake that closes, or a hand, moves an axis that the path has long left at
+ * rest: it was not blocked, and no axis goes back to where it moved last. */
+static void an_axis_that_was_not_blocked_takes_nobody_back(void **st)
+{
+	const double down[INTERP_NAXES] = { 0, -0.5 }, on[INTERP_NAXES] = {
+		3, -0.5
+	};
+
+	(void)st;
+	for (int n = 0; n < 8; n++) {
+		const int by = (n & 4 ? 100 : 20) * (n & 2 ? 1 : -1);
+		struct interp_build *b;
+		struct world w;
+		int32_t x;
+
+		world_init(&w, n & 1);
+		b = begin(INTERP_SIMULTANEOUS);
+		line(b, down);
+		line(b, on);
+		w.m = finish(b);
+		world_start(&w);
+		stop(&w, BY_ESTOP);
+		x = w.axis[INTERP_X].at;
+		w.axis[INTERP_Y].at += by;
+		run_for(&w, 0.3);
+		assert_int_equal(ask(&w, CYCLE_RETRACT, 0.05), ANSWER_DONE);
+		stands(&w);
+		assert_in_range(x - w.axis[INTERP_X].at, 0, 60);
+		assert_in_range(w.axis[INTERP_Y].at + 500 + 2, 0, 4);
+		world_free(&w);
+	}
+}
+
 /* Nobody knows what is in the way there; without the job an axis is free. */
 static void an_axis_that_was_moved_far_by_hand_is_not_driven_back(void **st)
 {
@@ -436,6 +469,7 @@ int main(void)
 		cmocka_unit_test(an_axis_blocked_before_its_path_turns_is_met_before_that),
 		cmocka_unit_test(a_way_back_that_was_held_ends_before_a_retract),
 		cmocka_unit_test(an_axis_that_springs_back_is_met_on_a_shallow_path),
+		cmocka_unit_test(an_axis_that_was_not_blocked_takes_nobody_back),
 		cmocka_unit_test(an_axis_that_was_moved_far_by_hand_is_not_driven_back),
 		cmocka_unit_test(without_power_a_verb_is_refused_and_its_return_starts_nothing),
 	};

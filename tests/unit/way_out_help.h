@@ -386,6 +386,7 @@ static void killed(struct world *w)
 		.far_mm = w->cycle.far_mm,
 		.sure_mm = w->cycle.resync.sure_mm,
 		.moved_beside = w->cycle.resync.moved_beside,
+		.adrift = w->cycle.resync.adrift,
 	};
 	const uint32_t seg = w->cycle.cursor.index, tick = w->cycle.cursor.tick;
 	int32_t zero[IO_NAXES] = { 0 };

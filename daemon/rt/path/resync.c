@@ -192,7 +192,8 @@ void resync_look(struct cycle *c, const struct io_inputs *in)
 	struct resync *r = &c->resync;
 
 	look_at_moves(c, in);
-	r->adrift |= off_now(c, in);
+	if (!in->axes_off)
+		r->adrift |= off_now(c, in);
 	if (stands(c, in)) {
 		measure(c, in);
 		if (!c->loaded && is_far(c))
@@ -219,8 +220,8 @@ static int64_t by_itself(const struct cycle *c, int i)
 	       NEAR_PULSES;
 }
 
-/* Was axis @i blocked, and in which direction?  Without power it may spring
- * back; what goes far was pushed. */
+/* Was axis @i blocked, and in which direction?  It was off while it had power.
+ * Without, it may spring back; what goes far was pushed. */
 static bool seek_axis(const struct cycle *c, struct resync *r, int i)
 {
 	const int beyond = r->off[i] < 0 ? 1 : -1;
@@ -228,7 +229,8 @@ static bool seek_axis(const struct cycle *c, struct resync *r, int i)
 
 	r->way[i] = r->slips >> i & 1 || r->moved_way[i] == 0 ? beyond :
 		    r->moved_way[i];
-	return abs(r->off[i]) > NEAR_PULSES && abs(went) <= by_itself(c, i) &&
+	return r->adrift >> i & 1 && abs(r->off[i]) > NEAR_PULSES &&
+	       abs(went) <= by_itself(c, i) &&
 	       (r->way[i] == beyond || r->way[i] * went <= NEAR_PULSES);
 }
 

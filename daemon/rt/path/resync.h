@@ -28,9 +28,10 @@
  * pulses are missing.  What springs back without power is behind sure_mm: on a
  * shallow path, far behind.
  *
- * An axis that went on by itself was not blocked, nor was one that was pushed
- * farther than max, or that the path leads away from by more than max.  It is
- * taken back by step 2, but not farther than max.
+ * An axis that was where it was sent until its power went was not blocked, nor
+ * was one that went on by itself, that was pushed farther than max, or that the
+ * path leads away from by more than max.  It is taken back by step 2, but not
+ * farther than max.
  *
  * Units: pulses of the drives; mm along the path.  Threads: RT-safe.
  */
