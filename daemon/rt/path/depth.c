@@ -54,11 +54,13 @@ static bool way_of(const struct interp_cursor *at, double ret[3])
 static double depth_of(const struct cycle *c)
 {
 	const struct interp_depth *d = &c->depth.cut;
+	const double *pulse_mm = c->cursor.p.head->pulse_mm;
+	const int32_t *pos = place_pos(c);
 	double mm = 0;
 
 	for (int k = 0; k < 3; k++)
-		mm += (place_axis(c, k) - d->from[k]) * d->way[k] *
-		      c->cursor.p.head->pulse_mm[k];
+		mm += (pos[k] + c->probe.shift[k] - d->from[k]) * d->way[k] *
+		      pulse_mm[k];
 	return mm;
 }
 
@@ -101,10 +103,9 @@ static void begin(struct cycle *c)
 /* A jump may go back over what was positioned before. */
 static bool positions_anew(const struct cycle *c)
 {
-	const double mm = place_mm(c);
-
 	return c->cursor.seg.flags & INTERP_SEG_UNCUT &&
-	       mm >= c->far_mm && mm > c->depth.cut.known_mm;
+	       place_mm(c) >= c->far_mm &&
+	       place_mm(c) > c->depth.cut.known_mm;
 }
 
 void depth_watch(struct cycle *c)
@@ -122,6 +123,6 @@ void depth_watch(struct cycle *c)
 	    c->state == STATE_APPROACH)
 		return;
 	t->now_mm = depth_of(c);
-	if (c->state == STATE_ERODE)
-		t->cut.far_mm = fmax(t->cut.far_mm, t->now_mm);
+	if (c->state == STATE_ERODE && t->now_mm > t->cut.far_mm)
+		t->cut.far_mm = t->now_mm;
 }

@@ -68,16 +68,22 @@ static void measure(struct cycle *c, const struct io_inputs *in)
 	r->is_off = any(r->off);
 }
 
-/* Bit per axis.  One that is not there stands at 0, and is sent there. */
-static uint32_t off_now(const struct cycle *c, const struct io_inputs *in)
+/* An axis that is not there stands at 0, and is sent there. */
+static bool is_near(const struct cycle *c, const struct io_inputs *in)
 {
 	uint32_t far = 0;
 
 	for (int i = 0; i < INTERP_NAXES; i++)
-		far |= (uint32_t)((uint32_t)minus(in->actual[i],
-						  c->comp.sent[i]) +
-				  NEAR_PULSES > 2 * NEAR_PULSES) << i;
-	return far;
+		far |= (uint32_t)minus(in->actual[i], c->comp.sent[i]) +
+		       NEAR_PULSES > 2 * NEAR_PULSES;
+	return !far;
+}
+
+static void note_off(struct cycle *c, const struct io_inputs *in)
+{
+	for (int i = 0; i < INTERP_NAXES; i++)
+		if (abs(minus(in->actual[i], c->comp.sent[i])) > NEAR_PULSES)
+			c->resync.adrift |= 1u << i;
 }
 
 static bool is_far(const struct cycle *c)
@@ -172,15 +178,16 @@ static void note_moves(struct cycle *c, const struct io_inputs *in)
 static void look_at_moves(struct cycle *c, const struct io_inputs *in)
 {
 	struct resync *r = &c->resync;
-	const double mm = place_mm(c);
+	const bool rested = r->rested;
 
 	if (in->starting || !c->comp.begun)
 		return;
-	if (r->unseen || (r->rested && !in->axes_off))
+	r->rested = in->axes_off && place_mm(c) == r->looked_mm;
+	if (in->axes_off)
+		r->looked_mm = place_mm(c);
+	if (r->unseen || (rested && !in->axes_off))
 		memcpy(r->seen, in->actual, sizeof(r->seen));
-	r->rested = in->axes_off && mm == r->looked_mm;
 	r->unseen = false;
-	r->looked_mm = mm;
 	if (c->loaded && !r->rested && has_moved(r, in))
 		note_moves(c, in);
 }
@@ -192,8 +199,8 @@ void resync_look(struct cycle *c, const struct io_inputs *in)
 	struct resync *r = &c->resync;
 
 	look_at_moves(c, in);
-	if (!in->axes_off)
-		r->adrift |= off_now(c, in);
+	if (!in->axes_off && !is_near(c, in))
+		note_off(c, in);
 	if (stands(c, in)) {
 		measure(c, in);
 		if (!c->loaded && is_far(c))

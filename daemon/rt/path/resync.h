@@ -65,9 +65,9 @@ struct resync {
 	int32_t seen[INTERP_NAXES];	/* where each axis stands, to
 					 * NEAR_PULSES; */
 	bool unseen;			/* ... not known yet */
-	double looked_mm;		/* the place of the last look; */
-	bool rested;			/* ... there was no power, and the path
-					 * did not move */
+	double looked_mm;		/* the place of the last look without
+					 * power; */
+	bool rested;			/* ... and the path did not move */
 	double moved_mm[INTERP_NAXES];	/* the place when it came there, toward
 					 * where it was sent; */
 	int8_t moved_way[INTERP_NAXES];	/* ... its direction, +1, -1; 0: it has
