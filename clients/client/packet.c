@@ -110,6 +110,7 @@ static void status_take(struct talk_status *s, const edm_status_t *m)
 	word(s->machine, m->machine);
 	text(s->faults, m->faults);
 	memcpy(s->pos_mm, m->pos_mm, sizeof(s->pos_mm));
+	memcpy(s->work_mm, m->work_mm, sizeof(s->work_mm));
 	s->utime = m->utime;
 	s->contour_mm = m->contour_mm;
 	s->contour_predicted_mm = m->contour_predicted_mm;

@@ -62,7 +62,7 @@ struct talk_status {
 	char machine[TALK_WORD_MAX];
 	STATUS_FIELDS(TALK_WORD, TALK_TEXT, TALK_COUNT, TALK_NUMBER)
 	char faults[TALK_TEXT_MAX];	/* all that are latched */
-	double pos_mm[TALK_NAXES];
+	double pos_mm[TALK_NAXES], work_mm[TALK_NAXES];
 	double contour_mm, contour_predicted_mm;	/* -1: not known */
 };
 

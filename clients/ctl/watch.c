@@ -25,13 +25,15 @@
 
 static void print_json(const struct talk_status *s)
 {
-	json_t *pos = json_array(), *j;
+	json_t *pos = json_array(), *work = json_array(), *j;
 	char *text;
 
 	for (int i = 0; i < TALK_NAXES; i++)
 		json_array_append_new(pos, json_real(s->pos_mm[i]));
-	j = json_pack("{s:I,s:s,s:o}", "utime", (json_int_t)s->utime,
-		      "machine", s->machine, "pos_mm", pos);
+	for (int i = 0; i < TALK_NAXES; i++)
+		json_array_append_new(work, json_real(s->work_mm[i]));
+	j = json_pack("{s:I,s:s,s:o,s:o}", "utime", (json_int_t)s->utime,
+		      "machine", s->machine, "pos_mm", pos, "work_mm", work);
 	STATUS_FIELDS(PRINT_WORD, PRINT_WORD, PRINT_COUNT, PRINT_NUMBER)
 	if (j && s->contour_mm >= 0) {
 		json_object_set_new(j, "contour_um",
@@ -63,29 +65,40 @@ static void print_generator(const struct talk_status *s)
 		printf("           its own fault: %s\n", s->generator_fault);
 }
 
-/* Of the systems that an operator has touched off, and of G54. */
+static void print_places(const char *work, const char *axes,
+			 const double mm[TALK_NAXES], double turn_deg)
+{
+	printf("work       %s", work);
+	for (int i = 0; i < TALK_NAXES; i++)
+		if (strchr(axes, "XYZABCUV"[i]))
+			printf(" %c %.3f", "XYZABCUV"[i], mm[i]);
+	if (turn_deg != 0)
+		printf(" (turned by %.4f degrees)", turn_deg);
+	putchar('\n');
+}
+
+/* The system in force; and those that an operator has touched off. */
 static void print_work(struct ctl *c, const struct talk_status *s)
 {
 	json_t *rows = NULL, *row;
+	double mm[TALK_NAXES];
 	size_t k;
 
+	if (*s->work)
+		print_places(s->work, s->axes, s->work_mm, s->work_turn_deg);
 	if (ctl_ask_json(c, &(struct talk_question) { .verb = "offsets" },
 			 &rows))
 		return;
 	json_array_foreach(rows, k, row) {
-		if (k > 0 && !*ctl_text_of(row, "touched"))
-			continue;
-		printf("work       %s", ctl_text_of(row, "work"));
-		for (int i = 0; i < TALK_NAXES; i++) {
-			const char name[2] = { "XYZABCUV"[i], '\0' };
-			const double shift_mm = *name == 'Z' ?
-						s->electrode_shift_mm : 0;
+		const json_t *at = json_object_get(row, "at_mm");
 
-			if (strchr(s->axes, *name))
-				printf(" %s %.3f", name, s->pos_mm[i] -
-				       shift_mm - ctl_number_of(row, name));
-		}
-		putchar('\n');
+		if (!*ctl_text_of(row, "touched") ||
+		    strcmp(ctl_text_of(row, "work"), s->work) == 0)
+			continue;
+		for (size_t i = 0; i < TALK_NAXES; i++)
+			mm[i] = json_number_value(json_array_get(at, i));
+		print_places(ctl_text_of(row, "work"), s->axes, mm,
+			     ctl_number_of(row, "turn_deg"));
 	}
 	json_decref(rows);
 }

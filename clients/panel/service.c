@@ -320,7 +320,9 @@ static void take_status(struct service *a)
 		s->hunts = t->hunts;
 		s->lines = t->lines;
 		s->electrode = t->electrode;
-		s->shift_mm = t->electrode_shift_mm;
+		snprintf(s->work, sizeof(s->work), "%s", t->work);
+		s->work_turn_deg = t->work_turn_deg;
+		memcpy(s->work_mm, t->work_mm, sizeof(s->work_mm));
 		s->lean_deg = t->lean_deg;
 		s->queue_len = t->queue_len;
 		take_time(s, t);

@@ -14,6 +14,8 @@
 
 #include "share.h"
 
+#include "interp/axis.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -35,7 +37,8 @@ struct service_status {
 	char faults[SERVICE_FAULTS_MAX];	/* all that are latched */
 	int lines, queue_len, hunts;
 	int electrode;			/* in the holder; 0: none */
-	double shift_mm;		/* of Z, by it */
+	char work[SERVICE_WORD_MAX];	/* system in force: "G54", or "" */
+	double work_turn_deg, work_mm[INTERP_NAXES];
 	double lean_deg;		/* of a wire */
 	double eta_s;			/* -1: there is no estimate */
 	double eta_min_s, eta_max_s, eta_factor, end_s, progress;

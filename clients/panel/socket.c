@@ -223,6 +223,19 @@ static void add_time(json_t *o, const struct service_status *s)
 			    json_real(round(s->progress * 1000) / 1000));
 }
 
+static void add_work(json_t *o, const struct service_status *s)
+{
+	json_t *mm = json_array();
+
+	for (int i = 0; i < INTERP_NAXES; i++)
+		json_array_append_new(mm, json_real(round(s->work_mm[i] * 1e6) /
+						    1e6));
+	json_object_set_new(o, "work", json_string(s->work));
+	json_object_set_new(o, "workTurn",
+			    json_real(round(s->work_turn_deg * 1e4) / 1e4));
+	json_object_set_new(o, "workMm", mm);
+}
+
 static json_t *state_of(struct panel *p)
 {
 	const struct service_status *s = service_status(p->service);
@@ -240,7 +253,7 @@ static json_t *state_of(struct panel *p)
 	json_object_set_new(o, "hunts", json_integer(s->hunts));
 	json_object_set_new(o, "lines", json_integer(s->lines));
 	json_object_set_new(o, "electrode", json_integer(s->electrode));
-	json_object_set_new(o, "shift", json_real(s->shift_mm));
+	add_work(o, s);
 	json_object_set_new(o, "lean",
 			    json_real(round(s->lean_deg * 100) / 100));
 	json_object_set_new(o, "queue", json_integer(s->queue_len));

@@ -193,6 +193,8 @@ struct config_sim {
 	uint32_t block;			/* 1: there is a block */
 	double block_min_mm[2], block_max_mm[2];	/* X, Y; machine */
 	double block_top_mm;		/* Z; it has no bottom */
+	double block_turn_deg;		/* about its middle, from X toward Y */
+	double block_tilt_deg;		/* its face rises along X */
 	double bore_at_mm[2], bore_mm;	/* centre, diameter; 0: none */
 	double feeler_mm;		/* diameter of the electrode */
 };

@@ -52,7 +52,8 @@ struct checkpoint_job {
 					 * this loading */
 	uint32_t run;			/* 0: the first run of the job; each
 					 * resume draws a number */
-	double shift_mm;		/* of Z, by the electrode; + is up */
+	double by[SHM_NAXES];		/* what the electrode shifts the axes
+					 * by; X Y at C 0 */
 };
 
 struct checkpoint_base {
@@ -116,7 +117,7 @@ void checkpoint_stats(struct checkpoint_file *f, struct checkpoint_stats *ret);
 /* -- checkpoint_block.c --------------------------------------------------- */
 
 /* The blocks contain structs of shm.h. */
-#define CHECKPOINT_VERSION	(3 << 16 | SHM_LAYOUT)
+#define CHECKPOINT_VERSION	(4 << 16 | SHM_LAYOUT)
 #define CHECKPOINT_BLOCK	4096
 #define CHECKPOINT_SECTOR	512
 

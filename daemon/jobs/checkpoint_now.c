@@ -29,7 +29,7 @@ static void fill_job(struct checkpoint_job *to, const struct jobs *j)
 		to->electrode = e->worn[e->now].electrode;
 		to->part = e->worn[e->now].part;
 		to->first_part = e->worn[0].part;
-		to->shift_mm = e->worn[e->now].offset_mm;
+		memcpy(to->by, e->worn[e->now].by, sizeof(to->by));
 	}
 }
 

@@ -160,6 +160,8 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 				  c->request.executed_max : EXECUTED_MAX;
 	memcpy(of.text.nc.work_offset_mm, c->request.work_mm,
 	       sizeof(of.text.nc.work_offset_mm));
+	memcpy(of.text.nc.work_turn_deg, c->request.work_turn_deg,
+	       sizeof(of.text.nc.work_turn_deg));
 	c->request.electrodes.at = c->request.electrode;
 	of.text.nc.electrodes = &c->request.electrodes;
 	memcpy(of.build.start_mm, c->request.start_mm,

@@ -46,6 +46,7 @@ struct compiler_request {
 					 * no */
 	const char *dialect;		/* NULL: by machine file and name */
 	double work_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* offset_request() */
+	double work_turn_deg[INTERP_NC_NWORK];
 	uint32_t segs_max, executed_max;	/* 0: as many as a job may
 						 * have */
 	uint32_t walked_max;		/* interp_build_options */

@@ -20,7 +20,8 @@ uint32_t electrode_held(struct jobs *j)
 
 /* -- What the compiler gets ------------------------------------------------ */
 
-static void put_asked(struct electrode *e, uint32_t number, double offset_mm)
+static void put_asked(struct electrode *e, uint32_t number,
+		      const double by[INTERP_NAXES])
 {
 	size_t i = 0;
 
@@ -30,7 +31,8 @@ static void put_asked(struct electrode *e, uint32_t number, double offset_mm)
 		return;
 	if (i == e->nasked)
 		e->nasked++;
-	e->asked[i] = (struct interp_electrode) { number, offset_mm };
+	e->asked[i] = (struct interp_electrode) { .number = number };
+	memcpy(e->asked[i].by, by, sizeof(e->asked[i].by));
 }
 
 /* A job that is resumed has the electrode and the shifts with which it began,
@@ -49,11 +51,10 @@ static void as_it_began(struct jobs *j, uint32_t n,
 		return;
 	for (size_t i = k; i-- > 0;)
 		if (w[i].electrode)
-			put_asked(&j->electrode, w[i].electrode,
-				  w[i].offset_mm);
+			put_asked(&j->electrode, w[i].electrode, w[i].by);
 	/* If the store was damaged, its rows are lost. */
 	if (k == 0 && last->electrode)
-		put_asked(&j->electrode, last->electrode, last->shift_mm);
+		put_asked(&j->electrode, last->electrode, last->by);
 	to->chosen = k ? w[0].electrode : last->electrode;
 	if (to->chosen == 0)
 		to->held = 0;
@@ -66,9 +67,13 @@ void electrode_request(struct jobs *j, const struct store_job *job,
 	const size_t n = store_electrodes(j->store, all, STORE_ELECTRODES_MAX);
 	struct electrode *e = &j->electrode;
 
+	double by[INTERP_NAXES];
+
 	e->nasked = 0;
-	for (size_t i = 0; i < n; i++)
-		put_asked(e, all[i].n, all[i].length_mm - all[i].wear_mm);
+	for (size_t i = 0; i < n; i++) {
+		store_electrode_by(&all[i], by);
+		put_asked(e, all[i].n, by);
+	}
 	ret->electrodes.held = electrode_held(j);
 	ret->electrodes.chosen = job ? job->electrode : chosen;
 	ret->from.held = ret->electrodes.held;
@@ -248,16 +253,20 @@ static int take(struct jobs *j, uint32_t n)
 	return err;
 }
 
-static double offset_of(const struct jobs *j, uint32_t number)
+/* As the compiler rounds it. */
+static void find_by(const struct jobs *j, uint32_t number,
+		    double ret[INTERP_NAXES])
 {
 	const struct electrode *e = &j->electrode;
-	const double pulse_mm = j->config->axes.axis[INTERP_Z].pulse_mm;
+	size_t i = 0;
 
-	for (size_t i = 0; i < e->nasked; i++)
-		if (e->asked[i].number == number)
-			return round(e->asked[i].offset_mm / pulse_mm) *
-			       pulse_mm;
-	return 0;
+	while (i < e->nasked && e->asked[i].number != number)
+		i++;
+	for (int k = 0; i < e->nasked && k < INTERP_NAXES; k++) {
+		const double pulse_mm = j->config->axes.axis[k].pulse_mm;
+
+		ret[k] = round(e->asked[i].by[k] / pulse_mm) * pulse_mm;
+	}
 }
 
 /* Rows for all changes of this loading; -1 s: it has not begun to cut. */
@@ -276,9 +285,9 @@ static int add_rows(struct jobs *j)
 
 		e->worn[k] = (struct store_worn) {
 			.job = e->n, .part = before + k,
-			.electrode = number,
-			.offset_mm = offset_of(j, number), .after_s = -1,
+			.electrode = number, .after_s = -1,
 		};
+		find_by(j, number, e->worn[k].by);
 		err = store_worn_add(j->store, &e->worn[k]);
 	}
 	return err;
@@ -321,7 +330,7 @@ static void tell_load(struct jobs *j)
 			.kind = "electrode", .job = j->queue.job.id,
 		}, "job %s: electrode %u %s shifts Z by %+.4f mm; the job "
 			  "takes about %.4f mm off it%s", j->queue.job.name,
-			  number, is.name, e->worn[k].offset_mm, u.wear_mm,
+			  number, is.name, e->worn[k].by[INTERP_Z], u.wear_mm,
 			  u.unknown_mm > NOTHING_MM ?
 			  ", and what the conditions without a wear ratio take "
 			  "is not known" : "");

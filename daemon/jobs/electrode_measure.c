@@ -50,7 +50,8 @@ static void make_text(const struct jobs *j, uint32_t number, bool is_new,
 
 	put_over(j, over, sizeof(over));
 	/* Behind the contact only distances mean anything. */
-	snprintf(to, TEXT_MAX, "(T%u Z=probe-%.4f%s)\nG21 G90 F60\n"
+	snprintf(to, TEXT_MAX, "(T%u Z=probe-%.4f%s)\nG10 L2 P0 R0\n"
+		 "G21 G90 F60\n"
 		 "G53 G0 Z%.4f\n%s%sG53 G0 Z%.4f\nG91 G80 Z-%.4f\n"
 		 "G0 Z%.4f\nM2\n", number, way_mm, is_new ? " new" : "",
 		 m->clear_z_mm,
@@ -105,7 +106,7 @@ static int add_job(struct jobs *j, const struct jobs_lcm_command *c,
 	snprintf(told, sizeof(told), "job measure electrode %u queued", number);
 	return jobs_add(j, &(struct store_new) {
 		.id = id, .name = name, .sha256 = hex, .tech_sha256 = "",
-		.text = text, .bytes = strlen(text), .lines = 8, .hold = true,
+		.text = text, .bytes = strlen(text), .lines = 9, .hold = true,
 		.now_us = jobs_utime(), .electrode = number,
 		.measures = true, .told = told,
 	});

@@ -19,6 +19,7 @@
 #include "eta.h"
 #include "forecaster.h"
 #include "link.h"
+#include "origins.h"
 #include "queue.h"
 #include "reply.h"
 #include "store.h"
@@ -52,6 +53,7 @@ struct jobs {
 	struct eta eta;			/* made of its result */
 	struct early early;
 	struct electrode electrode;
+	struct offset offset;
 	struct trust trust;
 	struct keyfile host_key;
 	bool key_shared;		/* a copy of it is in /dev/shm */

@@ -494,5 +494,6 @@ void jobs_lcm_status(struct jobs_lcm *w, const struct jobs_lcm_status *s)
 	};
 
 	memcpy(m.pos_mm, s->pos_mm, sizeof(m.pos_mm));
+	memcpy(m.work_mm, s->work_mm, sizeof(m.work_mm));
 	PUBLISH(w, NULL, "STATUS", edm_status_t, &m);
 }

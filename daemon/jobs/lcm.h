@@ -86,7 +86,7 @@ struct jobs_lcm_status {
 	STATUS_FIELDS(JOBS_LCM_WORD, JOBS_LCM_WORD, JOBS_LCM_COUNT,
 		      JOBS_LCM_NUMBER)
 	const char *faults;
-	double pos_mm[JOBS_LCM_NAXES];
+	double pos_mm[JOBS_LCM_NAXES], work_mm[JOBS_LCM_NAXES];
 	double contour_mm, contour_predicted_mm;
 };
 

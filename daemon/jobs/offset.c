@@ -4,10 +4,8 @@
 
 #include "again.h"
 #include "electrode.h"
-#include "keys.h"
 #include "mdi.h"
-#include "store_work.h"
-#include "touch.h"
+#include "offset_put.h"
 
 #include <errno.h>
 #include <jansson.h>
@@ -18,11 +16,6 @@
 #include <sysexits.h>
 
 #define BACK_LEAST_MM	0.2		/* after a contact */
-
-static const char *work_name(int work)
-{
-	return config_section[SECTION_WORK].instance[work];
-}
 
 /* -- For the compiler ------------------------------------------------------ */
 
@@ -37,104 +30,19 @@ static bool goes_on(struct jobs *j, const struct store_job *job)
 int offset_request(struct jobs *j, const struct store_job *job,
 		   struct compiler_request *ret)
 {
+	double mm[INTERP_NC_NWORK][WORK_NROWS];
 	int err = 0;
 
-	memcpy(ret->work_mm, j->config->work_offset_mm, sizeof(ret->work_mm));
 	if (job && !goes_on(j, job))
 		err = store_work_keep(j->store, job->n);
-	return err ? -EIO : store_work_read(j->store, job ? job->n : 0,
-					    ret->work_mm, NULL);
-}
-
-/* -- Written down, and told ------------------------------------------------ */
-
-/* What Z of a program is shifted by now. */
-static double shift_mm(struct jobs *j, int axis)
-{
-	const uint32_t held = electrode_held(j);
-	struct store_electrode e;
-
-	if (axis != INTERP_Z || held == 0 ||
-	    store_electrode_find(j->store, held, &e) < 0)
-		return 0;
-	return e.length_mm - e.wear_mm;
-}
-
-/* Of every axis: what it was, and what it is. */
-static void tell(const struct jobs *j, int work, const double *was,
-		 const double *is, char to[TOUCH_WHY_MAX])
-{
-	const size_t size = TOUCH_WHY_MAX;
-	size_t n = (size_t)snprintf(to, size, "%s:", work_name(work));
-
-	for (int i = 0; i < INTERP_NAXES && n < size; i++) {
-		const struct interp_axis_limits *a = &j->config->axes.axis[i];
-
-		if (was[i] == is[i])
-			continue;
-		n += (size_t)snprintf(to + n, size - n, "%s %c was %.4f, is "
-				      "%.4f%s", to[n - 1] == ':' ? "" : ";",
-				      INTERP_AXIS_LETTERS[i], was[i], is[i],
-				      is[i] < a->travel_min_mm ||
-				      is[i] > a->travel_max_mm ?
-				      ", beyond the travel" : "");
-	}
-	if (n < size && to[n - 1] == ':')
-		snprintf(to + n, size - n, " as it was");
-}
-
-static int put_axes(struct jobs *j, const struct touch *t,
-		    const struct shm_snapshot *s)
-{
-	const uint32_t counts = t->form ? t->felt : t->here;
-	int err = t->clear ? store_work_clear(j->store, t->work) : 0;
-
-	for (int i = 0; i < INTERP_NAXES && err == 0; i++) {
-		if (counts >> i & 1)
-			err = store_work_put(j->store, t->work, i,
-					     touch_zero_mm(t, s, i) -
-					     shift_mm(j, i));
-		else if (t->at >> i & 1)
-			err = store_work_put(j->store, t->work, i, t->mm[i]);
+	if (err)
+		return -EIO;
+	err = offset_read(j, job ? job->n : 0, mm, NULL);
+	for (int i = 0; i < INTERP_NC_NWORK; i++) {
+		memcpy(ret->work_mm[i], mm[i], sizeof(ret->work_mm[i]));
+		ret->work_turn_deg[i] = mm[i][WORK_TURN];
 	}
 	return err;
-}
-
-static int put_work(struct jobs *j, const struct touch *t,
-		    const struct shm_snapshot *s, char told[TOUCH_WHY_MAX])
-{
-	double was[INTERP_NC_NWORK][INTERP_NAXES];
-	double is[INTERP_NC_NWORK][INTERP_NAXES];
-	int err;
-
-	memcpy(was, j->config->work_offset_mm, sizeof(was));
-	memcpy(is, was, sizeof(is));
-	err = store_work_read(j->store, 0, was, NULL);
-	if (err == 0)
-		err = put_axes(j, t, s);
-	if (err == 0)
-		err = store_work_read(j->store, 0, is, NULL);
-	if (err == 0)
-		tell(j, t->work, was[t->work], is[t->work], told);
-	return err;
-}
-
-/* Without a number the face is the reference of the machine file. */
-static int put_electrode(struct jobs *j, const struct touch *t,
-			 const struct shm_snapshot *s, char told[TOUCH_WHY_MAX])
-{
-	const double face_mm = t->here ? 0 : j->config->measure.reference_z_mm;
-
-	return electrode_put_length(j, t->electrode,
-				    touch_zero_mm(t, s, INTERP_Z) - face_mm,
-				    t->is_new, told);
-}
-
-static int put(struct jobs *j, const struct touch *t,
-	       const struct shm_snapshot *s, char told[TOUCH_WHY_MAX])
-{
-	return t->work >= 0 ? put_work(j, t, s, told) :
-			      put_electrode(j, t, s, told);
 }
 
 /* -- Carried out ----------------------------------------------------------- */
@@ -152,16 +60,39 @@ static const char *why_not_electrode(struct jobs *j, const struct touch *t)
 		snprintf(why, sizeof(why), "electrode %u is not in the holder; "
 			 "put it in, and electrode use %u", t->electrode,
 			 t->electrode);
-	else
+	else if (t->form == TOUCH_SKEW && !offset_has_c(j))
+		return "nothing turns the electrode: the machine has no C, or "
+		       "C is in its table; turn it by hand";
+	else if (t->form == TOUCH_BOSS || t->form == TOUCH_BORE)
+		return t->felt & ~t->here && !j->config->measure.there ?
+		       "where the middle of the reference is, nobody knows; "
+		       "X=12.5 Y=3, or [electrode] measure = yes, measure_x_mm "
+		       "and measure_y_mm of the machine file" : NULL;
+	else if (t->form != TOUCH_SKEW)
 		return electrode_no_length(&e, t->is_new);
+	else
+		return NULL;
 	return why;
+}
+
+/* A corner tells two places of two walls, each seen from another place. */
+static const char *why_not_turned(struct jobs *j, const struct touch *t)
+{
+	double mm[INTERP_NC_NWORK][WORK_NROWS];
+
+	if (t->work < 0 || t->form != TOUCH_CORNER ||
+	    offset_read(j, 0, mm, NULL) < 0 || mm[t->work][WORK_TURN] == 0)
+		return NULL;
+	return "a corner in a system that is turned; two edges, one after the "
+	       "other: X=probe+ and Y=probe+; or clear before it";
 }
 
 /* Where the machine stands has to be certain. */
 static const char *why_not(struct jobs *j, const struct touch *t)
 {
 	const uint32_t moved = t->here | t->felt |
-			       (t->form == TOUCH_BOSS ? 1u << INTERP_Z : 0);
+			       (t->form == TOUCH_BOSS ? 1u << INTERP_Z : 0) |
+			       (t->form == TOUCH_SKEW ? 1u << t->along : 0);
 
 	if (!t->form && j->queue.job.n && !queue_is_leaving(&j->queue))
 		return "a job is loaded, which has the offsets as they were; "
@@ -175,7 +106,7 @@ static const char *why_not(struct jobs *j, const struct touch *t)
 					      j->link.snap.unhomed : 0)))
 		return "the place of this axis is not certain; edmctl home, or "
 		       "edmctl place";
-	return t->work < 0 ? why_not_electrode(j, t) : NULL;
+	return t->work < 0 ? why_not_electrode(j, t) : why_not_turned(j, t);
 }
 
 static void feel(struct jobs *j, const struct jobs_lcm_command *c,
@@ -211,7 +142,7 @@ void offset_set(struct jobs *j, const struct verb *v,
 		verbs_answer(j, c, REFUSED, not);
 	else if (t.form)
 		feel(j, c, &t);
-	else if (put(j, &t, &j->link.snap, told))
+	else if (offset_put(j, &t, &j->link.snap, told))
 		verbs_answer(j, c, EX_IOERR, "the store failed");
 	else
 		verbs_answer(j, c, 0, told);
@@ -243,7 +174,7 @@ const char *offset_touched(struct jobs *j)
 	else if (!touch_is_found(&t, s))
 		snprintf(told, sizeof(told), "nothing was touched off: there "
 			 "was no contact");
-	else if (put(j, &t, s, told))
+	else if (offset_put(j, &t, s, told))
 		snprintf(told, sizeof(told), "it was felt, but the store "
 			 "failed; once more");
 	jobs_note(j, &(struct jobs_note) {
@@ -255,11 +186,13 @@ const char *offset_touched(struct jobs *j)
 
 /* -- The list -------------------------------------------------------------- */
 
-static json_t *row(const struct jobs *j, int work, const double *mm,
-		   uint32_t set)
+static json_t *row(struct jobs *j, int work, const double *mm, uint32_t set)
 {
-	json_t *o = json_pack("{s:s}", "work", work_name(work));
+	json_t *o = json_pack("{s:s}", "work", offset_name(work));
+	json_t *from = json_array(), *at = json_array();
+	double at_mm[INTERP_NAXES];
 	char letters[INTERP_NAXES + 1] = "", name[2] = "";
+	struct interp_origin is;
 	size_t n = 0;
 
 	for (int i = 0; o && i < INTERP_NAXES; i++) {
@@ -270,20 +203,30 @@ static json_t *row(const struct jobs *j, int work, const double *mm,
 		if (set >> i & 1)
 			letters[n++] = name[0];
 	}
+	offset_origin(j, work, mm, &is);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		json_array_append_new(from, json_real(is.mm[i]));
+	offset_place_mm(&is, &j->link.snap, at_mm);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		json_array_append_new(at, json_real(at_mm[i]));
 	json_object_set_new(o, "touched", json_string(letters));
+	json_object_set_new(o, "turn_deg", json_real(mm[WORK_TURN]));
+	json_object_set_new(o, "tilt_x_deg", json_real(mm[WORK_TILT_X]));
+	json_object_set_new(o, "tilt_y_deg", json_real(mm[WORK_TILT_Y]));
+	json_object_set_new(o, "from_mm", from);
+	json_object_set_new(o, "at_mm", at);
 	return o;
 }
 
 void offset_list(struct jobs *j, const struct verb *v,
 		 const struct jobs_lcm_command *c)
 {
-	double mm[INTERP_NC_NWORK][INTERP_NAXES];
+	double mm[INTERP_NC_NWORK][WORK_NROWS];
 	uint32_t set[INTERP_NC_NWORK];
 	json_t *all;
 
 	(void)v;
-	memcpy(mm, j->config->work_offset_mm, sizeof(mm));
-	if (store_work_read(j->store, 0, mm, set) < 0) {
+	if (offset_read(j, 0, mm, set) < 0) {
 		verbs_answer(j, c, EX_IOERR, "the store failed");
 		return;
 	}
@@ -291,4 +234,87 @@ void offset_list(struct jobs *j, const struct verb *v,
 	for (int i = 0; i < INTERP_NC_NWORK; i++)
 		json_array_append_new(all, row(j, i, mm[i], set[i]));
 	verbs_answer_json(j, c, all);
+}
+
+/* -- In force -------------------------------------------------------------- */
+
+static void forget(struct offset *o)
+{
+	free(o->origins);
+	*o = (struct offset) { .n = 0 };
+}
+
+/* The program that edmd has says it, also after a restart of this service. */
+static int take(struct jobs *j, uint32_t n)
+{
+	struct offset *o = &j->offset;
+	struct interp_program p;
+	const void *block;
+	size_t bytes;
+	int err;
+
+	forget(o);
+	o->n = n;
+	err = shm_program_read(&block, &bytes, j->machine, n);
+	if (err < 0)
+		return err;
+	err = interp_program_map(&p, block, bytes);
+	if (err == 0 && p.head->norigins > 0)
+		o->origins = calloc(p.head->norigins, sizeof(*o->origins));
+	if (o->origins) {
+		o->norigins = p.head->norigins;
+		memcpy(o->origins, p.origins,
+		       o->norigins * sizeof(*o->origins));
+	}
+	shm_program_unmap(block, bytes);
+	return err;
+}
+
+static const struct interp_origin *at_segment(const struct offset *o,
+					      uint32_t seg)
+{
+	const struct interp_origin *of = NULL;
+
+	for (uint64_t i = 0; i < o->norigins && o->origins[i].seg <= seg; i++)
+		of = &o->origins[i];
+	return of;
+}
+
+bool offset_now(struct jobs *j, struct interp_origin *ret)
+{
+	const struct shm_snapshot *s = &j->queue.snap;
+	double mm[INTERP_NC_NWORK][WORK_NROWS];
+	const struct interp_origin *of;
+
+	if (!j->queue.job.n || s->program != j->queue.job.n) {
+		if (offset_read(j, 0, mm, NULL) < 0)
+			return false;
+		offset_origin(j, 0, mm[0], ret);
+		return true;
+	}
+	if (j->offset.n != s->program)
+		take(j, s->program);
+	of = at_segment(&j->offset, s->seg);
+	if (!of || of->work >= INTERP_NC_NWORK)
+		return false;
+	*ret = *of;
+	return true;
+}
+
+void offset_place_mm(const struct interp_origin *o,
+		     const struct shm_snapshot *s, double ret_mm[INTERP_NAXES])
+{
+	const struct interp_turn t = interp_turn_of(o->turn_deg);
+
+	/* A program counts from its contacts. */
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret_mm[i] = (double)(s->pos[i] - s->shift[i]) * s->pulse_mm[i];
+	interp_turn_back(&t, ret_mm, ret_mm);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		ret_mm[i] -= o->mm[i];
+}
+
+void offset_fini(struct jobs *j)
+{
+	forget(&j->offset);
 }

@@ -2,7 +2,8 @@
 /*
  * offset.h - work offsets: touched off, kept, given to the compiler
  *
- *	machine place = programmed place + work offset + shift of the electrode
+ *	machine place = R(turn) * programmed place + work offset
+ *			+ shift of the electrode
  *
  * Threads: one, that of the event loop.
  */
@@ -27,6 +28,17 @@ int offset_request(struct jobs *j, const struct store_job *job,
 /** offset_touched() - the job is done: if it felt for an offset or an
  *  electrode, write down what it found.  Return: what was and what is; "". */
 const char *offset_touched(struct jobs *j);
+
+/** offset_now() - where places are counted from at the line that is cut, or, if
+ *  no job is loaded, where a program would.  Return: it is known. */
+bool offset_now(struct jobs *j, struct interp_origin *ret);
+
+/** offset_place_mm() - the place that a program has for where @s stands. */
+void offset_place_mm(const struct interp_origin *o,
+		     const struct shm_snapshot *s,
+		     double ret_mm[INTERP_NAXES]);
+
+void offset_fini(struct jobs *j);
 
 /* -- Functions of rows in verbs.c -- */
 

@@ -6,6 +6,7 @@
 #include "process.h"
 #include "interrupt.h"
 #include "jobs.h"
+#include "offset.h"
 
 #include "interp/tech_table.h"
 #include "jobs_log.h"
@@ -575,6 +576,7 @@ void queue_fini(struct jobs *j)
 	load_fini(j);
 	early_fini(j);
 	forecaster_fini(j);
+	offset_fini(j);
 	if (!q->job.n || (q->job.begun_us && !queue_is_leaving(q)))
 		return;
 	load_send(j, SHM_UNLOAD, q->job.n, jobs_now_us());

@@ -3,6 +3,8 @@
 #include "faults.h"
 #include "interrupt.h"
 #include "jobs.h"
+#include "offset.h"
+#include "offset_put.h"
 
 #include "interp/tech_table.h"
 
@@ -144,10 +146,23 @@ static void fill_electrode(struct jobs_lcm_status *w, struct jobs *j)
 	/* A job has what it was loaded with. */
 	if (e->n && e->wear.nchanges)
 		w->electrode_shift_mm = e->worn[e->now < 0 ? 0 : e->now]
-						.offset_mm;
+						.by[INTERP_Z];
 	if (e->n && e->now >= 0)
 		w->electrode_wear_mm = e->worn[e->now].before_mm +
 				       electrode_used_mm(j);
+}
+
+static void fill_work(struct jobs_lcm_status *w, struct jobs *j)
+{
+	struct interp_origin o;
+
+	w->work = "";
+	memcpy(w->work_mm, w->pos_mm, sizeof(w->work_mm));
+	if (!offset_now(j, &o))
+		return;
+	w->work = offset_name((int)o.work);
+	w->work_turn_deg = o.turn_deg;
+	offset_place_mm(&o, &j->link.snap, w->work_mm);
 }
 
 const char *jobs_axes(uint32_t axes, char to[INTERP_NAXES + 1])
@@ -183,6 +198,7 @@ void status_tick(struct jobs *j, int64_t now_us)
 		 "degraded: " : "ok", store_why(j->store));
 	w.store = store;
 	fill_electrode(&w, j);
+	fill_work(&w, j);
 	fill_generator(&w, j);
 	w.interrupted = j->interrupted;
 	w.axes = jobs_axes(j->config->axes.present, axes);

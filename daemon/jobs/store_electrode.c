@@ -30,7 +30,7 @@ bool store_electrode_ok(double n)
 }
 
 #define COLUMNS	"n, name, material, note, undersize_mm, length_mm, wear_mm, " \
-		"spark_s, life_mm, life_s, state"
+		"spark_s, life_mm, life_s, state, x_mm, y_mm, c_deg"
 
 static void copy(sqlite3_stmt *q, int i, char *to, size_t size)
 {
@@ -61,6 +61,9 @@ static void get(sqlite3_stmt *q, struct store_electrode *ret)
 	ret->life_mm = sqlite3_column_double(q, 8);
 	ret->life_s = sqlite3_column_double(q, 9);
 	ret->state = state_of(sqlite3_column_text(q, 10));
+	ret->x_mm = sqlite3_column_double(q, 11);
+	ret->y_mm = sqlite3_column_double(q, 12);
+	ret->c_deg = sqlite3_column_double(q, 13);
 }
 
 int store_electrode_find(struct store *s, uint32_t n,
@@ -80,11 +83,22 @@ int store_electrode_find(struct store *s, uint32_t n,
 int store_electrode_put(struct store *s, const struct store_electrode *e)
 {
 	return store_do(s, STORE_KEEP, "INSERT OR REPLACE INTO electrode("
-			COLUMNS ") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-			"Isssdddddds", (int64_t)e->n, e->name, e->material,
-			e->note, e->undersize_mm, e->length_mm, e->wear_mm,
+			COLUMNS ") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+			"?, ?)", "Isssddddddsddd", (int64_t)e->n, e->name,
+			e->material, e->note, e->undersize_mm, e->length_mm,
+			e->wear_mm,
 			e->spark_s, e->life_mm, e->life_s,
-			state_names[e->state]);
+			state_names[e->state], e->x_mm, e->y_mm, e->c_deg);
+}
+
+void store_electrode_by(const struct store_electrode *e,
+			double ret[INTERP_NAXES])
+{
+	memset(ret, 0, INTERP_NAXES * sizeof(*ret));
+	ret[INTERP_X] = e->x_mm;
+	ret[INTERP_Y] = e->y_mm;
+	ret[INTERP_Z] = e->length_mm - e->wear_mm;
+	ret[INTERP_C] = e->c_deg;
 }
 
 int store_electrode_remove(struct store *s, uint32_t n)
@@ -119,7 +133,8 @@ char *store_electrodes_json(struct store *s, uint32_t after)
 	sqlite3_stmt *q = store_ask(s, NULL, "SELECT json_group_array(json(r)) "
 		"FROM (SELECT json_object('n', n, 'name', name, 'material', "
 		"material, 'undersize_mm', undersize_mm, 'length_mm', "
-		"length_mm, 'wear_mm', wear_mm, 'spark_s', spark_s, 'life_mm', "
+		"length_mm, 'wear_mm', wear_mm, 'x_mm', x_mm, 'y_mm', y_mm, "
+		"'c_deg', c_deg, 'spark_s', spark_s, 'life_mm', "
 		"life_mm, 'life_s', life_s, 'left', " LEFT ", 'state', state, "
 		"'held', json(iif(n=(SELECT value FROM number WHERE "
 		"key='electrode'), 'true', 'false')), 'note', note) AS r FROM "
@@ -134,17 +149,19 @@ char *store_electrodes_json(struct store *s, uint32_t after)
 /* -- How jobs used them ---------------------------------------------------- */
 
 #define WORN_COLUMNS	"job, part, electrode, offset_mm, before_mm, " \
-			"after_mm, before_s, after_s, known"
+			"after_mm, before_s, after_s, known, x_mm, y_mm, c_deg"
 
 static int worn_put(struct store *s, const struct store_worn *w,
 		    enum store_keep keep)
 {
 	return store_do(s, keep, "INSERT OR REPLACE INTO worn(" WORN_COLUMNS
-			") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)", "iiidddddi",
+			") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+			"iiidddddiddd",
 			(int64_t)w->job, (int64_t)w->part,
-			(int64_t)w->electrode, w->offset_mm, w->before_mm,
+			(int64_t)w->electrode, w->by[INTERP_Z], w->before_mm,
 			w->after_mm, w->before_s, w->after_s,
-			(int64_t)w->known);
+			(int64_t)w->known, w->by[INTERP_X], w->by[INTERP_Y],
+			w->by[INTERP_C]);
 }
 
 int store_worn_add(struct store *s, const struct store_worn *w)
@@ -162,12 +179,16 @@ static void worn_get(sqlite3_stmt *q, struct store_worn *ret)
 	ret->job = (uint32_t)sqlite3_column_int64(q, 0);
 	ret->part = (uint32_t)sqlite3_column_int64(q, 1);
 	ret->electrode = (uint32_t)sqlite3_column_int64(q, 2);
-	ret->offset_mm = sqlite3_column_double(q, 3);
+	memset(ret->by, 0, sizeof(ret->by));
+	ret->by[INTERP_Z] = sqlite3_column_double(q, 3);
 	ret->before_mm = sqlite3_column_double(q, 4);
 	ret->after_mm = sqlite3_column_double(q, 5);
 	ret->before_s = sqlite3_column_double(q, 6);
 	ret->after_s = sqlite3_column_double(q, 7);
 	ret->known = sqlite3_column_int(q, 8) != 0;
+	ret->by[INTERP_X] = sqlite3_column_double(q, 9);
+	ret->by[INTERP_Y] = sqlite3_column_double(q, 10);
+	ret->by[INTERP_C] = sqlite3_column_double(q, 11);
 }
 
 uint32_t store_worn_next(struct store *s, uint32_t n)

@@ -12,6 +12,8 @@
 
 #include "store.h"
 
+#include "interp/axis.h"
+
 #define STORE_ELECTRODES_MAX	256
 /* Numbers of electrodes.  T80 to T99 are the words of pumps and supplies in
  * some dialects. */
@@ -30,6 +32,8 @@ struct store_electrode {
 	double length_mm;		/* from the reference to the tip, when
 					 * it was new */
 	double wear_mm;			/* of this length lost so far */
+	double x_mm, y_mm, c_deg;	/* what it shifts X Y, at C 0, and C by:
+					 * as it sits in its holder */
 	double spark_s;			/* it has sparked */
 	double life_mm, life_s;		/* worn out at so much wear, or after so
 					 * much sparking; 0: no limit */
@@ -41,6 +45,10 @@ bool store_electrode_ok(double n);
 
 /** store_electrode_state_name() - "there", "worn", "absent". */
 const char *store_electrode_state_name(enum store_electrode_state s);
+
+/** store_electrode_by() - what it shifts the axes by; X Y at C 0. */
+void store_electrode_by(const struct store_electrode *e,
+			double ret[INTERP_NAXES]);
 
 /** store_electrode_find() - 0, -ENOENT, or -EIO: it cannot be known. */
 int store_electrode_find(struct store *s, uint32_t n,
@@ -64,7 +72,7 @@ char *store_electrodes_json(struct store *s, uint32_t after);
 struct store_worn {
 	uint32_t job, part;
 	uint32_t electrode;		/* 0: none */
-	double offset_mm;		/* what Z was shifted by; + is up */
+	double by[INTERP_NAXES];	/* what the axes were shifted by */
 	double before_mm, after_mm;	/* its wear */
 	double before_s, after_s;	/* how long it had sparked */
 	bool known;			/* after_mm counts all that was cut */

@@ -146,6 +146,14 @@ static const char *const steps[] = {
 	/* What it will take.  NULL: nobody has looked yet; below 0: it cannot
 	 * be told. */
 	"ALTER TABLE job ADD COLUMN forecast_s REAL;",
+
+	/* An electrode may shift X Y and C too, as it sits in its holder. */
+	"ALTER TABLE electrode ADD COLUMN x_mm REAL NOT NULL DEFAULT 0;"
+	"ALTER TABLE electrode ADD COLUMN y_mm REAL NOT NULL DEFAULT 0;"
+	"ALTER TABLE electrode ADD COLUMN c_deg REAL NOT NULL DEFAULT 0;"
+	"ALTER TABLE worn ADD COLUMN x_mm REAL NOT NULL DEFAULT 0;"
+	"ALTER TABLE worn ADD COLUMN y_mm REAL NOT NULL DEFAULT 0;"
+	"ALTER TABLE worn ADD COLUMN c_deg REAL NOT NULL DEFAULT 0;",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

@@ -19,7 +19,9 @@
 /* Which electrodes cut it, and their wear before and after. */
 #define ELECTRODES_JSON	", 'electrodes', (SELECT json_group_array(json(e)) " \
 			"FROM (SELECT json_object('electrode', electrode, " \
-			"'shift_mm', offset_mm, 'wear_before_mm', before_mm, " \
+			"'shift_mm', offset_mm, 'shift_x_mm', x_mm, " \
+			"'shift_y_mm', y_mm, 'shift_c_deg', c_deg, " \
+			"'wear_before_mm', before_mm, " \
 			"'wear_after_mm', after_mm, 'known', json(iif(known, " \
 			"'true', 'false')), 'sparked_s', after_s - before_s) " \
 			"AS e FROM worn WHERE worn.job=job.n AND after_s>=0 " \

@@ -6,11 +6,11 @@
 
 #include <errno.h>
 
-int store_work_put(struct store *s, int work, int axis, double mm)
+int store_work_put(struct store *s, int work, int row, double value)
 {
 	return store_do(s, STORE_MUST, "INSERT OR REPLACE INTO work(job, work, "
 			"axis, mm) VALUES(0, ?, ?, ?)", "iid", (int64_t)work,
-			(int64_t)axis, mm);
+			(int64_t)row, value);
 }
 
 int store_work_clear(struct store *s, int work)
@@ -20,7 +20,7 @@ int store_work_clear(struct store *s, int work)
 }
 
 int store_work_read(struct store *s, uint32_t n,
-		    double mm[INTERP_NC_NWORK][INTERP_NAXES],
+		    double mm[INTERP_NC_NWORK][WORK_NROWS],
 		    uint32_t ret_set[INTERP_NC_NWORK])
 {
 	int err = 0, rc = SQLITE_ROW;
@@ -36,7 +36,7 @@ int store_work_read(struct store *s, uint32_t n,
 		const int axis = sqlite3_column_int(q, 1);
 
 		if (work < 0 || work >= INTERP_NC_NWORK || axis < 0 ||
-		    axis >= INTERP_NAXES)
+		    axis >= WORK_NROWS)
 			continue;
 		mm[work][axis] = sqlite3_column_double(q, 2);
 		if (ret_set)

@@ -7,7 +7,10 @@
  * force.  A job keeps the rows that were in force when it was loaded, so that
  * it goes on with them after an interruption.
  *
- * Units: mm, machine coordinates.
+ * A system has rows for its axes, and for how its work lies: its turn, which
+ * programs obey, and how far its face was found to tilt, which is only told.
+ *
+ * Units: mm, machine coordinates; degrees.
  * Threads: one.  Calls return the same values as those of store.h.
  */
 #ifndef JOBS_STORE_WORK_H
@@ -19,9 +22,15 @@
 #include "interp/build.h"
 #include "interp/nc.h"
 
-/** store_work_put() - the origin of system @work on @axis; on the disk, or
- *  refused. */
-int store_work_put(struct store *s, int work, int axis, double mm);
+enum store_work_row {
+	WORK_TURN = INTERP_NAXES,	/* from X toward Y */
+	WORK_TILT_X, WORK_TILT_Y,	/* the face rises along X, Y */
+	WORK_NROWS
+};
+
+/** store_work_put() - the origin of system @work on an axis, or another row of
+ *  it; on the disk, or refused. */
+int store_work_put(struct store *s, int work, int row, double value);
 
 /** store_work_clear() - system @work is that of the machine file again. */
 int store_work_clear(struct store *s, int work);
@@ -29,11 +38,11 @@ int store_work_clear(struct store *s, int work);
 /**
  * store_work_read() - put those of job @n over @mm.
  *
- * @ret_set: a bit for each axis that was touched off, by system; NULL is fine.
+ * @ret_set: a bit for each row that was touched off, by system; NULL is fine.
  * Return: 0 or -EIO: they cannot be known.
  */
 int store_work_read(struct store *s, uint32_t n,
-		    double mm[INTERP_NC_NWORK][INTERP_NAXES],
+		    double mm[INTERP_NC_NWORK][WORK_NROWS],
 		    uint32_t ret_set[INTERP_NC_NWORK]);
 
 /** store_work_keep() - job @n begins with those in force; on the disk, or

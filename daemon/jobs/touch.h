@@ -6,7 +6,7 @@
  * The words stand in the first line of the text that feels, as a comment.  So
  * whoever follows the job knows what it is for, also after a restart.
  *
- * Units: mm.  Threads: any.
+ * Units: mm, degrees.  Threads: any.
  */
 #ifndef JOBS_TOUCH_H
 #define JOBS_TOUCH_H
@@ -26,7 +26,11 @@
 enum touch_form {
 	TOUCH_NOTHING,
 	TOUCH_EDGE, TOUCH_BORE, TOUCH_BOSS, TOUCH_CORNER,
+	TOUCH_SKEW,			/* a face at two places: how it lies */
 };
+
+/* What two touches of a face say. */
+enum touch_angle { TOUCH_TURN, TOUCH_TILT_X, TOUCH_TILT_Y };
 
 struct touch {
 	int work;			/* the system; -1: the electrode */
@@ -41,6 +45,11 @@ struct touch {
 	double most_mm;			/* an edge: it goes; 0: to the end of
 					 * the travel */
 	double radius_mm;		/* of the electrode */
+	int along;			/* a skew: from touch to touch it goes
+					 * along this axis ... */
+	double along_mm;		/* ... so far */
+	double off_mm;			/* a skew: so far off the face; 0: not
+					 * said */
 	char words[120];		/* of its cycle: " R10 Q0.1" */
 };
 
@@ -65,9 +74,17 @@ int touch_of_text(struct touch *ret, uint32_t present, const char *text);
 /** touch_is_found() - had every axis its contacts? */
 bool touch_is_found(const struct touch *t, const struct shm_snapshot *s);
 
-/** touch_zero_mm() - where 0 is by the contacts, or by where the axis stands:
- *  machine coordinates of the holder. */
-double touch_zero_mm(const struct touch *t, const struct shm_snapshot *s,
-		     int axis);
+/** touch_at_mm() - where the axes stood at the contacts, as far as they have
+ *  some, or stand: machine coordinates of the holder. */
+void touch_at_mm(const struct touch *t, const struct shm_snapshot *s,
+		 double ret_mm[INTERP_NAXES]);
+
+/** touch_zero_mm() - what is to be taken off the place of @axis there, so that
+ *  0 is left: the number that was asked for, less the radius. */
+double touch_zero_mm(const struct touch *t, int axis);
+
+/** touch_angle() - of a skew: how far the face turns the work, or tilts. */
+enum touch_angle touch_angle(const struct touch *t,
+			     const struct shm_snapshot *s, double *ret_deg);
 
 #endif /* JOBS_TOUCH_H */

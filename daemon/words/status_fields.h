@@ -8,7 +8,7 @@
  * line in shm.h and edmd/publish.c if the snapshot does not have it yet.
  *
  * Not in the table: when and from whom, and what is no single number or word
- * (pos_mm, faults, contour_mm and contour_predicted_mm).
+ * (pos_mm, work_mm, faults, contour_mm and contour_predicted_mm).
  *
  * Units: in every name; messages/edm.lcm says what each means.
  */
@@ -56,6 +56,8 @@
 	WORD(interrupted) \
 	WORD(lost) \
 	WORD(axes) \
+	WORD(work) \
+	NUMBER(work_turn_deg) \
 	COUNT(hunts) \
 	COUNT(electrode) \
 	NUMBER(electrode_shift_mm) \

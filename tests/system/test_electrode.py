@@ -46,7 +46,8 @@ def test_the_table_is_kept_and_changed(machine):
     add(m, 3, "name=rib", "material=copper", "undersize=0.1", "length=42.5",
         "life=0.5", "minutes=60", "note=left of the box")
     add(m, 1)
-    assert m.ctl("electrode", "set", "3", "wear=0.125").returncode == 0
+    assert m.ctl("electrode", "set", "3", "wear=0.125", "y=-0.02",
+                 "c=1.5").returncode == 0
     assert m.ctl("electrode", "use", "3").returncode == 0
     m.kill("jobs")
     m.start_jobs()
@@ -55,7 +56,8 @@ def test_the_table_is_kept_and_changed(machine):
     assert list(t) == [1, 3]
     assert t[3] == {
         "n": 3, "name": "rib", "material": "copper", "undersize_mm": 0.1,
-        "length_mm": 42.5, "wear_mm": 0.125, "spark_s": 0, "life_mm": 0.5,
+        "length_mm": 42.5, "wear_mm": 0.125, "x_mm": 0,
+        "y_mm": -0.02, "c_deg": 1.5, "spark_s": 0, "life_mm": 0.5,
         "life_s": 3600, "left": 0.75, "state": "there", "held": True,
         "note": "left of the box"}
     assert ">   3  rib" in m.ctl("electrode", "list").stdout

@@ -22,7 +22,8 @@ def places(m):
 def offsets(m):
     p = m.ctl("--json", "offset")
     assert p.returncode == 0, p.stderr
-    return {row["work"]: row for row in json.loads(p.stdout)}
+    return {row["work"]: {k: v for k, v in row.items() if k != "at_mm"}
+            for row in json.loads(p.stdout)}
 
 
 # -- MDI

@@ -3,6 +3,7 @@
 electrode, and the next job cuts there."""
 
 import json
+import math
 
 import pytest
 import rig
@@ -107,6 +108,139 @@ def test_the_next_job_cuts_at_what_was_felt(plate, form):
         assert at["XYZ".index(axis)] == pytest.approx(mm, abs=1.5 * PULSE)
 
 
+# A block that lies askew, and whose face rises along X.
+ASKEW = PLATE.replace("bore_mm = 12", "bore_mm = 0").replace(
+    "feeler_mm = 5", "feeler_mm = 5\nblock_turn_deg = 2\nblock_tilt_deg = 0.5")
+WITH_C = ASKEW.replace("[probe]", "[axis.C]\npresent = yes\n"
+                       "pulse_mm = 0.001\ntravel_min_mm = -200\n"
+                       "travel_max_mm = 200\n[probe]")
+MIDDLE = (12.5, -7.5)			# of the block
+
+
+def near(m, x, y, z=0.0):
+    """Beside the block, by machine places."""
+    go(m, "G53 G0 Z10", f"G53 G0 X{x} Y{y}", f"G53 G0 Z{z}")
+
+
+def corner(x, y, deg=2):
+    """A place of the block, as it lies."""
+    dx, dy = x - MIDDLE[0], y - MIDDLE[1]
+    c, s = math.cos(math.radians(deg)), math.sin(math.radians(deg))
+    return MIDDLE[0] + c * dx - s * dy, MIDDLE[1] + s * dx + c * dy
+
+
+def test_work_that_lies_askew_is_cut_as_it_lies(tmp_path):
+    with rig.Machine(tmp_path, ASKEW) as m:
+        m.start()
+        near(m, 0, -46)
+        code, out = said(m.ctl("offset", "G55", "skew", "Y+", "I20"))
+        assert code == 0 and "turn from X toward Y was 0.0000, is" in out, out
+        assert offsets(m)["G55"]["turn_deg"] == pytest.approx(2, abs=0.01)
+        # Along X and Y of the block, each felt at one place.
+        near(m, -27, -10)
+        assert m.ctl("offset", "G55", "X=probe+15",
+                     "radius=2.5").returncode == 0
+        near(m, 10, -47)
+        assert m.ctl("offset", "G55", "Y=probe+15",
+                     "radius=2.5").returncode == 0
+        near(m, 5, 0, 5)
+        assert m.ctl("offset", "G55", "Z=probe-10").returncode == 0
+        # The corner of the block is zero, and its X is the program's.
+        a = m.client.submit(b"G21 G90 G55\nG0 X20 Y5\nM0\nM30\n", "there")
+        assert a.code == 0, a.reason
+        m.client.job_where("there", "held", 60)
+        s = m.client.status_where(lambda s: s.stand == "stop", 10)
+        assert s.pos_mm[:2] == pytest.approx(corner(0, -35), abs=0.01)
+        # Told: which system, how it is turned, the program's own place.
+        assert (s.work, round(s.work_turn_deg, 1)) == ("G55", 2.0)
+        assert s.work_mm[:2] == pytest.approx((20, 5), abs=0.001)
+        out = m.ctl("status").stdout
+        assert "work       G55 X 20.000 Y 5.000" in out, out
+        assert f"(turned by {s.work_turn_deg:.4f} degrees)" in out, out
+
+
+def test_a_corner_of_a_turned_system_is_refused(tmp_path):
+    with rig.Machine(tmp_path, ASKEW) as m:
+        m.start()
+        near(m, 0, -46)
+        assert m.ctl("offset", "G55", "skew", "Y+", "I20").returncode == 0
+        code, out = said(m.ctl("offset", "G55", "corner", "X+", "Y+"))
+        assert code == 1 and "two edges" in out, out
+        assert m.ctl("offset", "G55", "clear").returncode == 0
+        assert offsets(m)["G55"]["turn_deg"] == 0
+
+
+def test_a_face_that_rises_is_told_along_each_axis(tmp_path):
+    with rig.Machine(tmp_path, ASKEW) as m:
+        m.start()
+        near(m, 0, 0, 5)
+        code, out = said(m.ctl("offset", "G54", "skew", "Z-", "I20"))
+        assert code == 0 and "tilt along X was 0.0000, is" in out, out
+        near(m, 0, 0, 5)
+        code, out = said(m.ctl("offset", "G54", "skew", "Z-", "J-20"))
+        assert code == 0, out
+        o = offsets(m)["G54"]
+        # The block is turned by 2 degrees, too.
+        assert o["tilt_x_deg"] == pytest.approx(0.5, abs=0.01)
+        assert o["tilt_y_deg"] == pytest.approx(0.5 * math.sin(
+            math.radians(2)), abs=0.01)
+        assert o["turn_deg"] == 0 and "tilt along Y was 0.0000" in out
+
+
+def test_the_electrode_turns_with_the_work(tmp_path):
+    with rig.Machine(tmp_path, WITH_C) as m:
+        m.start()
+        go(m, "G53 G0 C7")
+        assert m.ctl("offset", "G55", "C=0").returncode == 0
+        near(m, -26, -20)
+        code, out = said(m.ctl("offset", "G55", "skew", "X+", "J20"))
+        assert code == 0 and "; turn from X" in out, out
+        o = offsets(m)["G55"]
+        assert o["turn_deg"] == pytest.approx(2, abs=0.01)
+        assert o["C"] == pytest.approx(7 + o["turn_deg"], abs=1e-9)
+
+
+def test_an_electrode_is_turned_straight_and_over_its_middle(tmp_path):
+    """The block is the pin here: what turns it turns the electrode."""
+    with rig.Machine(tmp_path, WITH_C) as m:
+        m.start()
+        assert m.ctl("electrode", "add", "3").returncode == 0
+        code, out = said(m.ctl("offset", "T3", "skew", "Y+", "I20"))
+        assert code == 1 and "not in the holder" in out, out
+        assert m.ctl("electrode", "use", "3").returncode == 0
+        go(m, "G53 G0 C5")
+        near(m, 0, -46)
+        code, out = said(m.ctl("offset", "T3", "skew", "Y+", "I20"))
+        assert code == 0 and "C was 0.0000, is 3.00" in out, out
+        # A middle that is asked for as 0.5 and 0.25 beside where it is.
+        near(m, 12, -7, 6)
+        code, out = said(m.ctl("offset", "T3", "boss", "I50", "J50", "K8",
+                               "X=12", "Y=-7.25"))
+        assert code == 0 and "X was 0.0000, is 0.4" in out, out
+        e, = json.loads(m.ctl("--json", "electrode", "list").stdout)
+        c, s = math.cos(math.radians(5)), math.sin(math.radians(5))
+        assert e["x_mm"] == pytest.approx(c * 0.5 - s * 0.25, abs=0.05)
+        assert e["y_mm"] == pytest.approx(-s * 0.5 - c * 0.25, abs=0.05)
+        # Where C stands as straight, a program of 0 has its middle at 0.
+        go(m, "G53 G0 Z10", "G0 C0", "G0 X0 Y0")
+        at = places(m)
+        deg = math.radians(at[5])
+        assert at[5] == pytest.approx(e["c_deg"], abs=0.001)
+        assert at[:2] == pytest.approx(
+            (math.cos(deg) * e["x_mm"] - math.sin(deg) * e["y_mm"],
+             math.sin(deg) * e["x_mm"] + math.cos(deg) * e["y_mm"]),
+            abs=0.0015)
+        # C turns, and the middle stays.
+        go(m, "G0 C90")
+        deg = math.radians(places(m)[5])
+        assert places(m)[:2] == pytest.approx(
+            (math.cos(deg) * e["x_mm"] - math.sin(deg) * e["y_mm"],
+             math.sin(deg) * e["x_mm"] + math.cos(deg) * e["y_mm"]),
+            abs=0.0015)
+        code, out = said(m.ctl("mdi", "G1 F10 C80"))
+        assert code != 0 and "C turned by G0" in out, out
+
+
 def test_an_electrode_gets_its_length_from_a_face(plate):
     m = plate
     assert m.ctl("electrode", "add", "3").returncode == 0
@@ -166,7 +300,11 @@ def test_two_forms_at_once_touch_one_off(plate):
     (("G54", "X=probe-", "radius=-2"), "'radius=-2'"),
     (("G54", "bore", "clear"), "clear"), (("G54", "boss"), "boss"),
     (("G54", "X=1", "new"), "new"), (("T3", "X=probe-"), "T3"),
-    (("T3", "bore"), "T3"), (("T0", "Z=1"), "'T0'"), (("T84", "Z=1"), "'T84'"),
+    (("T3", "corner", "X+", "Y+"), "T3"), (("T3", "boss", "I9", "K1", "new"), "new"),
+    (("G54", "skew"), "skew Y+ I40"), (("G54", "skew", "Y+"), "I40"),
+    (("G54", "skew", "Y+", "J5"), "I40"), (("G54", "skew", "Y+", "I0"), "'I0'"),
+    (("G54", "skew", "Y+", "X-", "I5"), "one of X Y Z"), (("G54", "skew", "Y+", "I5", "Y=1"), "turn"),
+    (("T3", "skew", "Z-", "I5"), "tilts"), (("T0", "Z=1"), "'T0'"), (("T84", "Z=1"), "'T84'"),
 ])
 def test_what_fits_no_form_is_refused(plate, words, says):
     code, out = said(plate.ctl("offset", *words))

@@ -7,7 +7,8 @@
 #include "interp/wear.h"
 
 static const struct interp_electrode four[] = {
-	{ 1, 0 }, { 2, -0.125 }, { 3, 0.0304 }, { 7, -0.0996 },
+	{ 1, { 0, 0, 0 } }, { 2, { 0, 0, -0.125 } }, { 3, { 0, 0, 0.0304 } },
+	{ 7, { 0, 0, -0.0996 } },
 };
 
 static struct interp_electrodes table = { .at = four, .n = 4 };

@@ -18,7 +18,7 @@ SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
-STATUS = bytes.fromhex("58c33f971016a287")
+STATUS = bytes.fromhex("78ca3eb2c0da0bec")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -212,6 +212,9 @@ class Status:
     progress: float = 0.0
     pos_mm: tuple[float, ...] = ()
     axes: str = ""
+    work: str = ""
+    work_turn_deg: float = 0.0
+    work_mm: tuple[float, ...] = ()
     gap_v: float = 0.0
     feed_mm_s: float = 0.0
     depth_mm: float = 0.0
@@ -281,6 +284,9 @@ class Status:
                 + put.double(self.progress)
                 + b"".join(map(put.double, self.pos_mm))
                 + put.string(self.axes)
+                + put.string(self.work)
+                + put.double(self.work_turn_deg)
+                + b"".join(map(put.double, self.work_mm))
                 + put.double(self.gap_v)
                 + put.double(self.feed_mm_s)
                 + put.double(self.depth_mm)
@@ -352,6 +358,9 @@ class Status:
             r.double(),
             tuple(r.double() for _ in range(8)),
             r.string(),
+            r.string(),
+            r.double(),
+            tuple(r.double() for _ in range(8)),
             r.double(),
             r.double(),
             r.double(),

@@ -381,7 +381,9 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 				 "a plane of axes the machine has",
 				 "an arc in the plane %s", p->name);
 	nc_target(r, end_mm);
-	err = centre(r, p, end_mm, clockwise, &arc);
+	err = nc_check_eccentric(r, end_mm);
+	if (!err)
+		err = centre(r, p, end_mm, clockwise, &arc);
 	arc.sweep = sweep_of(r, p, end_mm, &arc, clockwise);
 	if (!err)
 		err = nc_word(r, false, false);

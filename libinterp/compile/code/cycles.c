@@ -7,6 +7,7 @@
  */
 #include "code/reader.h"
 #include "interp/orbit.h"
+#include "wire/to_build.h"
 
 #include <errno.h>
 #include <math.h>
@@ -83,6 +84,11 @@ static int take_plane(struct nc_orbit *c)
 	if (nc_has_guides(r) || r->offset_side || r->taper_side ||
 	    r->absent & axes || r->tool.on)
 		return refuse_machine(c);
+	if (r->contour.guides.turn.deg != 0 && p->normal != INTERP_Z)
+		return nc_refuse(r, c->at, "G17 before it, or a work system "
+				 "that is not turned", "an orbit in the plane "
+				 "%s, where the work is turned by %g degrees",
+				 p->name, r->contour.guides.turn.deg);
 	o->a = p->a;
 	o->b = p->b;
 	o->sink = p->normal;
@@ -112,6 +118,8 @@ static int take_depth(struct nc_orbit *c)
 	nc_target(r, end_mm);
 	o->end_mm = end_mm[o->sink];
 	o->c_end_deg = end_mm[INTERP_C];
+	if (nc_check_eccentric(r, end_mm))
+		return -EINVAL;
 	if (fabs(o->end_mm - o->start_mm[o->sink]) > NOTHING_MM)
 		return 0;
 	snprintf(wanted, sizeof(wanted), "%c, the bottom, away from where it "
@@ -341,7 +349,7 @@ static int to_escape(void *arg, const struct interp_escape *e)
 	struct nc_orbit *c = arg;
 	const int err = interp_build_flush(c->r->build, c->r->diag);
 
-	return err ? err : interp_build_escape(c->r->build, e);
+	return err ? err : guides_escape(&c->r->contour.guides, e);
 }
 
 /* The longest time that it may take: S, in seconds. */

@@ -6,6 +6,10 @@
  * so Z must stand d mm higher.  What it has lost by wear counts the other way.
  * The shift is a whole number of pulses, so every lattice point of the program
  * is moved by it and none is rounded otherwise.
+ *
+ * The middle of an electrode may be beside the axis that C turns about.  Then X
+ * Y are shifted too, by what is given for C 0, turned as C is.  Where a rapid
+ * motion turns C, X Y go along, so that the middle stays over the same place.
  */
 #include "code/reader.h"
 
@@ -52,11 +56,35 @@ static int refuse_unknown(struct nc_reader *r, uint64_t number,
 static void take(struct nc_reader *r, uint32_t number)
 {
 	const struct interp_electrode *e = find(r, number);
-	const double pulse_mm = r->o->machine->axis[INTERP_Z].pulse_mm;
 
 	r->electrode = r->next = number;
-	r->electrode_mm = e ? round(e->offset_mm / pulse_mm) * pulse_mm : 0;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const double pulse_mm = r->o->machine->axis[i].pulse_mm;
+
+		r->electrode_by[i] = e && !(r->absent & NC_BIT(i)) ?
+				     round(e->by[i] / pulse_mm) * pulse_mm : 0;
+	}
 	nc_set_offset(r);
+}
+
+void nc_electrode_at(const struct nc_reader *r, double c_deg,
+		     double ret_mm[INTERP_NAXES])
+{
+	const struct interp_turn c =
+		interp_turn_of(nc_is_eccentric(r) ? c_deg : 0);
+
+	interp_turn_to(&c, r->electrode_by, ret_mm);
+}
+
+int nc_check_eccentric(struct nc_reader *r, const double end_mm[INTERP_NAXES])
+{
+	if (!nc_is_eccentric(r) || end_mm[INTERP_C] == nc_here(r)[INTERP_C])
+		return 0;
+	return nc_refuse_at(r, r->line, "an electrode in the middle, or C "
+			    "turned by G0 before the cut", "a cut in which C "
+			    "turns electrode %u, whose middle is %.4f mm beside",
+			    r->electrode, hypot(r->electrode_by[INTERP_X],
+						r->electrode_by[INTERP_Y]));
 }
 
 /* It has its mark in the program, from which its wear is counted. */

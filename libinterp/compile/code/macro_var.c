@@ -38,10 +38,13 @@ static bool position(const struct nc_reader *r, uint32_t n, uint32_t first,
 		     bool machine, double *ret)
 {
 	const uint32_t i = n - first;
+	double mm[INTERP_NAXES];
 
 	if (n < first || i >= INTERP_NAXES)
 		return false;
-	*ret = in_units(r, i, nc_here(r)[i] - (machine ? 0 : r->offset_mm[i]));
+	interp_turn_to(&r->contour.guides.turn, nc_here(r), mm);
+	*ret = in_units(r, i, machine ? mm[i] :
+			      nc_here(r)[i] - r->offset_mm[i]);
 	return true;
 }
 

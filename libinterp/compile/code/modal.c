@@ -2,6 +2,8 @@
 /* modal.c - carries out a block, group by group */
 #include "code/reader.h"
 
+#include <string.h>
+
 void nc_set_units(struct nc_reader *r, bool inches)
 {
 	r->unit_mm = inches ? 25.4 : 1;
@@ -12,17 +14,53 @@ void nc_set_units(struct nc_reader *r, bool inches)
 
 void nc_set_offset(struct nc_reader *r)
 {
-	for (int i = 0; i < INTERP_NAXES; i++)
-		r->offset_mm[i] = r->work_mm[r->work][i] +
-				  r->shift_mm[i];
+	struct interp_origin o = {
+		.work = r->work, .turn_deg = r->turn_deg[r->work],
+	};
+	double *mm = r->origin_mm;
+
+	nc_electrode_at(r, r->contour.here_mm[INTERP_C], mm);
 	/* Under G43.4 it is part of the tool. */
-	if (!r->tool.on)
-		r->offset_mm[INTERP_Z] += r->electrode_mm;
+	if (r->tool.on)
+		mm[INTERP_Z] = 0;
+	for (int i = 0; i < INTERP_NAXES; i++)
+		mm[i] += r->work_mm[r->work][i];
+	interp_turn_back(&r->contour.guides.turn, mm, mm);
+	for (int i = 0; i < INTERP_NAXES; i++)
+		r->offset_mm[i] = mm[i] + r->shift_mm[i];
 	/* The second plane is measured from the same origin. */
 	if (nc_has_guides(r)) {
 		r->offset_mm[INTERP_U] = r->offset_mm[INTERP_X];
 		r->offset_mm[INTERP_V] = r->offset_mm[INTERP_Y];
 	}
+	memcpy(o.mm, r->offset_mm, sizeof(o.mm));
+	r->word.origin = interp_build_origin(r->build, &o);
+}
+
+int nc_set_turn(struct nc_reader *r)
+{
+	const double deg = r->turn_deg[r->work];
+	const uint8_t *at = r->line_at;
+	int err;
+
+	if (deg == r->contour.guides.turn.deg) {
+		nc_set_offset(r);
+		return 0;
+	}
+	if (r->tool.on)
+		return nc_refuse(r, at, "G49 before it", "work that is turned "
+				 "by %g degrees, under G43.4", deg);
+	if (r->offset_side || r->taper_side)
+		return nc_refuse(r, at, "G40 and G50 before it", "work that is "
+				 "turned by %g degrees, under an offset or a "
+				 "taper", deg);
+	if (r->loose & (NC_BIT(NC_X) | NC_BIT(NC_Y)))
+		return nc_refuse(r, at, "a program of its own for the probing",
+				 "work that is turned by %g degrees, after a "
+				 "probing motion along X or Y", deg);
+	err = contour_turn(&r->contour, deg, r->diag);
+	nc_set_offset(r);
+	return err;
 }
 
 static int run_units(struct nc_reader *r)
@@ -60,8 +98,7 @@ static int run_arc_distance(struct nc_reader *r)
 static int run_work(struct nc_reader *r)
 {
 	r->work = r->block.code[NC_WORK]->value;
-	nc_set_offset(r);
-	return 0;
+	return nc_set_turn(r);
 }
 
 static int run_feed(struct nc_reader *r)
@@ -205,9 +242,6 @@ static const struct stray {
 } strays[] = {
 	{ NC_P, NC_MOTION, 2, 3, "turns of an arc, in LinuxCNC",
 	  "an arc without P, once for each turn" },
-	{ NC_R, NC_ONE_SHOT, NC_WRITE, NC_WRITE,
-	  "it turns the work offset, in LinuxCNC",
-	  "G10 without R, and places that are turned" },
 	{ NC_UJ, NC_STOP, NC_CALL, NC_CALL,
 	  "in this dialect the centre of the top's arc, not how often",
 	  "M98 P21000 for two times O1000, or G65 P1000 L2" },

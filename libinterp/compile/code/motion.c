@@ -7,8 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double zero_mm[INTERP_NAXES];
-
 #define EACH_AXIS(mask, i) \
 	(uint32_t left_ = (mask), i; \
 	 left_ && (i = (uint32_t)__builtin_ctz(left_), true); \
@@ -43,6 +41,19 @@ static void lean(const struct nc_reader *r, double end_mm[INTERP_NAXES])
 	}
 }
 
+/* G53: what is not named stays where it is on the machine. */
+static void machine_target(const struct nc_reader *r,
+			   double end_mm[INTERP_NAXES])
+{
+	const struct interp_turn *t = &r->contour.guides.turn;
+	const struct nc_block *b = &r->block;
+
+	interp_turn_to(t, end_mm, end_mm);
+	for EACH_AXIS(b->words & NC_AXES, i)
+		end_mm[i] = b->value[i] * r->scale[i];
+	interp_turn_back(t, end_mm, end_mm);
+}
+
 static inline void target(const struct nc_reader *r,
 			  double ret_end_mm[INTERP_NAXES])
 {
@@ -50,10 +61,10 @@ static inline void target(const struct nc_reader *r,
 	const double *here = nc_here(r);
 	const double *base = r->incremental ? here : r->offset_mm;
 
+	memcpy(ret_end_mm, here, INTERP_NAXES * sizeof(*ret_end_mm));
 	if (nc_has_group(r, NC_MACHINE))
-		base = zero_mm;
-	memcpy(ret_end_mm, here, sizeof(zero_mm));
-	for EACH_AXIS(b->words & NC_AXES, i)
+		machine_target(r, ret_end_mm);
+	else for EACH_AXIS(b->words & NC_AXES, i)
 		ret_end_mm[i] = base[i] + b->value[i] * r->scale[i];
 	if (!nc_has_guides(r))
 		return;
@@ -125,12 +136,13 @@ static const uint8_t *blame(const struct nc_reader *r,
 {
 	const struct nc_block *b = &r->block;
 	const uint8_t *at = NULL;
+	double mm[INTERP_NAXES];
 
+	interp_turn_to(&r->contour.guides.turn, end_mm, mm);
 	for EACH_AXIS(b->words & NC_AXES, i) {
 		const struct interp_axis_limits *l = &r->o->machine->axis[i];
 
-		if (!(end_mm[i] >= l->travel_min_mm &&
-		      end_mm[i] <= l->travel_max_mm))
+		if (!(mm[i] >= l->travel_min_mm && mm[i] <= l->travel_max_mm))
 			return b->at[i];
 	}
 	for EACH_AXIS(b->words & NC_MOVES, i) {
@@ -165,6 +177,33 @@ int nc_action(struct nc_reader *r, enum interp_kind kind, uint32_t arg,
 	return err;
 }
 
+/* With an electrode whose middle is beside the axis of C: where C turns, X Y go
+ * along.  Places of the machine are those of the axes. */
+static int line_beside(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		       bool rapid)
+{
+	const struct interp_turn *t = &r->contour.guides.turn;
+	const double from_deg = nc_here(r)[INTERP_C];
+	const bool named = nc_has_group(r, NC_MACHINE) ||
+			   nc_has_group(r, NC_ONE_SHOT);
+	double was[INTERP_NAXES], is[INTERP_NAXES], to_mm[INTERP_NAXES];
+	int err = rapid ? 0 : nc_check_eccentric(r, end_mm);
+
+	memcpy(to_mm, end_mm, sizeof(to_mm));
+	nc_electrode_at(r, from_deg, was);
+	nc_electrode_at(r, end_mm[INTERP_C], is);
+	interp_turn_back(t, was, was);
+	interp_turn_back(t, is, is);
+	for (int i = INTERP_X; i <= INTERP_Y && !named; i++)
+		to_mm[i] += is[i] - was[i];
+	if (!err)
+		err = contour_line(&r->contour, to_mm, &r->word, r->diag);
+	err = nc_placed(r, err, to_mm);
+	if (from_deg != end_mm[INTERP_C])
+		nc_set_offset(r);
+	return err;
+}
+
 static inline int line_to(struct nc_reader *r,
 			  const double end_mm[INTERP_NAXES], bool rapid)
 {
@@ -178,6 +217,8 @@ static inline int line_to(struct nc_reader *r,
 		return err;
 	if (r->tool.on)
 		return nc_tool_line(r, end_mm, rapid);
+	if (nc_is_eccentric(r))
+		return line_beside(r, end_mm, rapid);
 	err = contour_line(&r->contour, end_mm, &r->word, r->diag);
 	return nc_placed(r, err, end_mm);
 }
@@ -251,8 +292,10 @@ static int home(struct nc_reader *r)
 				 "the axes to send to machine zero, as in "
 				 "G91 G28 Z0",
 				 "G28 without axis words before any motion");
+	interp_turn_to(&r->contour.guides.turn, end_mm, end_mm);
 	for EACH_AXIS(axes, i)
 		end_mm[i] = 0;
+	interp_turn_back(&r->contour.guides.turn, end_mm, end_mm);
 	if (nc_has_guides(r))
 		follow(r, axes, end_mm);
 	return nc_line_to(r, end_mm, true);
@@ -298,8 +341,7 @@ static int set_here(struct nc_reader *r)
 	}
 	for EACH_AXIS(axes, i)
 		r->shift_mm[i] = here[i] - b->value[i] * r->scale[i] -
-				 r->work_mm[r->work][i] -
-				 (i == INTERP_Z ? r->electrode_mm : 0);
+				 r->origin_mm[i];
 	nc_set_offset(r);
 	r->unnamed &= ~b->words;
 	r->local &= ~b->words;

@@ -61,6 +61,7 @@ static void reset_modes(struct nc_reader *r)
 	const struct interp_nc_options *o = r->o;
 
 	memcpy(r->work_mm, o->work_offset_mm, sizeof(r->work_mm));
+	memcpy(r->turn_deg, o->work_turn_deg, sizeof(r->turn_deg));
 	r->arc_incremental = !r->d->arc_places;
 	r->lengths = r->d->point != NC_POINT_FREE ||
 		     (o->notes && o->notes->plan) ? NC_LENGTHS : 0;
@@ -160,6 +161,8 @@ int interp_nc_compile(const struct interp_text *text,
 	open_text(&r, text->bytes ? text->at : "", text->bytes);
 	reset_modes(&r);
 	err = nc_check_tape(&r);
+	if (!err)
+		err = nc_set_turn(&r);
 	if (!err)
 		err = nc_electrode_begin(&r);
 	if (!err)

@@ -8,6 +8,7 @@
  */
 #include "code/nurbs_words.h"
 #include "code/tip_turn.h"
+#include "wire/to_build.h"
 #include "grow.h"
 
 #include <errno.h>
@@ -160,6 +161,34 @@ int nc_curve_check_end(struct nc_reader *r, const double here[INTERP_NAXES])
 	return 0;
 }
 
+/* Each point is a place times its weight. */
+static int check_beside(struct nc_reader *r)
+{
+	const struct nc_curve *c = &r->curve;
+	double at[INTERP_NAXES];
+	const uint32_t n = nc_is_eccentric(r) ? c->npoints : 0;
+	int err = 0;
+
+	for (uint32_t i = 0; i < n && !err; i++) {
+		const double *row = c->points + (size_t)i * ROW;
+
+		memcpy(at, nc_here(r), sizeof(at));
+		if (fabs(row[INTERP_C] / row[INTERP_NAXES] - at[INTERP_C]) >
+		    1e-9)
+			at[INTERP_C]++;
+		err = nc_check_eccentric(r, at);
+	}
+	return err;
+}
+
+static int check_end(struct nc_reader *r)
+{
+	double here[INTERP_NAXES];
+
+	guides_here(&r->contour.guides, here);
+	return nc_curve_check_end(r, here);
+}
+
 int nc_curve_build(struct nc_reader *r)
 {
 	struct nc_curve *c = &r->curve;
@@ -173,6 +202,8 @@ int nc_curve_build(struct nc_reader *r)
 
 	c->open = 0;
 	if (!err)
+		err = check_beside(r);
+	if (!err)
 		err = nc_room(r);
 	if (err)
 		return err;
@@ -185,8 +216,7 @@ int nc_curve_build(struct nc_reader *r)
 	if (err == 1)
 		err = 0;
 	else if (!err)
-		err = nc_curve_check_end(r,
-				interp_build_here(r->contour.guides.build));
+		err = check_end(r);
 	return nc_placed(r, err, c->last_mm);
 }
 

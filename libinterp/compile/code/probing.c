@@ -410,6 +410,12 @@ int nc_run_probe(struct nc_reader *r)
 
 	if (r->tool.on || nc_has_guides(r) || r->offset_side || r->taper_side)
 		return refuse_mode(r);
+	if (r->contour.guides.turn.deg != 0)
+		return nc_refuse(r, word_at(r), "a work system that is not "
+				 "turned before it, as G55", "%s where the work "
+				 "is turned by %g degrees: it feels along one "
+				 "axis", nc_quote_word(r, word_at(r)).s,
+				 r->contour.guides.turn.deg);
 	if (r->o->delivery && r->o->delivery->no_sense)
 		return nc_refuse(r, r->block.code_at[NC_PROBE],
 				 r->o->delivery->no_sense, "a motion that "

@@ -229,6 +229,7 @@ struct nc_reader {
 	uint8_t plane;			/* 0 ... 2: G17 ... G19 */
 	uint8_t work;			/* 0 ... 8: G54 ... G59.3 */
 	double work_mm[INTERP_NC_NWORK][INTERP_NAXES];
+	double turn_deg[INTERP_NC_NWORK];
 	bool incremental, arc_incremental;
 	uint32_t lengths;		/* slots where a decimal point
 					 * matters */
@@ -236,7 +237,10 @@ struct nc_reader {
 	double scale[INTERP_NAXES];	/* unit_mm; 1 for rotary axes */
 	double shift_mm[INTERP_NAXES];	/* by G92 or G52 */
 	uint32_t local;			/* axes that G52 has shifted */
-	double offset_mm[INTERP_NAXES];	/* work offset and shift together */
+	double offset_mm[INTERP_NAXES];	/* work offset, electrode and shift
+					 * together, turned back as nc_here()
+					 * is: interp/turn.h */
+	double origin_mm[INTERP_NAXES];	/* ... without the shift */
 	double feed_mm_s, feed_deg_s;	/* 0: there is none yet */
 	struct interp_build_word word;	/* its condition is modal, too */
 	struct nc_register registers[NC_NREGISTERS];	/* D and H */
@@ -258,7 +262,8 @@ struct nc_reader {
 	/* The electrode. */
 	uint32_t electrode;		/* in force; 0: none */
 	uint32_t next;			/* named by a T word, for the change */
-	double electrode_mm;		/* what it shifts Z by: whole pulses */
+	double electrode_by[INTERP_NAXES];	/* what it shifts the axes by:
+					 * whole pulses; X Y at C 0 */
 	uint32_t nchanges;
 
 	/* Probing. */
@@ -368,6 +373,23 @@ int nc_run_groups(struct nc_reader *r, uint32_t groups);
  */
 void nc_set_units(struct nc_reader *r, bool inches);
 void nc_set_offset(struct nc_reader *r);
+
+/** nc_set_turn() - another work system is in force, or is turned otherwise. */
+int nc_set_turn(struct nc_reader *r);
+
+/** nc_electrode_at() - what the electrode shifts the axes by, where C stands
+ *  at @c_deg. */
+void nc_electrode_at(const struct nc_reader *r, double c_deg,
+		     double ret_mm[INTERP_NAXES]);
+
+/** nc_is_eccentric() - is its middle beside the axis that C turns about? */
+static inline bool nc_is_eccentric(const struct nc_reader *r)
+{
+	return r->electrode_by[INTERP_X] != 0 || r->electrode_by[INTERP_Y] != 0;
+}
+
+/** nc_check_eccentric() - may it be cut to @end_mm, as far as C turns? */
+int nc_check_eccentric(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
 
 /* Functions of groups, called by nc_run_line(). */
 int nc_run_motion(struct nc_reader *r);

@@ -57,7 +57,7 @@ static int take_length(struct nc_reader *r)
 void nc_tool_length(struct nc_reader *r)
 {
 	struct nc_tool_point *t = &r->tool;
-	const double mm = r->electrode_mm +
+	const double mm = r->electrode_by[INTERP_Z] +
 			  (t->longer ? r->registers[t->length].mm : 0);
 	struct interp_kin_pose p;
 
@@ -94,6 +94,14 @@ static int switch_on(struct nc_reader *r)
 		return refuse_on(r, "G40 and G50 before it, and no guides",
 				 "places of the tip with a wire's offset or "
 				 "taper");
+	if (r->contour.guides.turn.deg != 0)
+		return refuse_on(r, "a work system that is not turned",
+				 "places of the tip in a work system that is "
+				 "turned");
+	if (nc_is_eccentric(r))
+		return refuse_on(r, "an electrode in the middle, whose x and y "
+				 "are 0", "places of the tip of an electrode "
+				 "whose middle is beside");
 	err = take_length(r);
 	if (err)
 		return err;

@@ -145,7 +145,7 @@ enum nc_motion {
 #define NC_ONE_SHOTS(W) \
 	W("dwell", DWELL, dwell, NC_BIT(NC_P) | NC_BIT(NC_X)) \
 	W("write-offset", WRITE, nc_write_offset, \
-	  NC_AXES | NC_BIT(NC_L) | NC_BIT(NC_P)) \
+	  NC_AXES | NC_BIT(NC_L) | NC_BIT(NC_P) | NC_BIT(NC_R)) \
 	W("home", HOME, home, NC_AXES) \
 	W("set-place", SET, set_here, NC_AXES) \
 	W("set-place-off", SET_CANCEL, set_cancel, 0) \

@@ -36,6 +36,9 @@
 /* If there is not so much, it is taken in pieces of this, to the last one. */
 #define LEAST_BYTES	(64u << 10)
 
+#define ORIGINS_BACK	32		/* so many are looked at for an equal
+					 * one */
+
 static size_t next_bytes(const struct table *t)
 {
 	const size_t bytes = t->room * t->size;
@@ -181,6 +184,7 @@ struct interp_build *interp_build_create(const struct interp_build_options *o)
 	b->stops.size = sizeof(struct interp_nurbs_stop);
 	b->numbers.size = sizeof(double);
 	b->runs.size = sizeof(int32_t);
+	b->origins.size = b->known.size = sizeof(struct interp_origin);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const struct interp_axis_limits *l = &o->machine->axis[i];
 
@@ -227,6 +231,8 @@ void interp_build_destroy(struct interp_build *b)
 	free(b->fit.end_mm);
 	free(b->fit.lines);
 	free(b->runs.at);
+	free(b->origins.at);
+	free(b->known.at);
 	free(b);
 }
 
@@ -343,6 +349,45 @@ static int change_cond(struct interp_build *b,
 	return 0;
 }
 
+/* From this segment on, that of @w counts. */
+static int change_origin(struct interp_build *b,
+			 const struct interp_build_word *w)
+{
+	const struct interp_origin *known = b->known.at;
+	struct interp_origin *o;
+
+	if (!w->origin || w->origin > b->known.n)
+		return 0;
+	o = build_table_add(&b->origins);
+	if (!o)
+		return -ENOMEM;
+	*o = known[w->origin - 1];
+	o->seg = (uint32_t)b->segs.n;
+	b->origin = w->origin;
+	return 0;
+}
+
+uint32_t interp_build_origin(struct interp_build *b,
+			     const struct interp_origin *o)
+{
+	struct interp_origin is = *o, *known = b->known.at;
+	const size_t n = b->known.n;
+
+	is.seg = 0;
+	for (size_t i = n; i-- > 0 && i + ORIGINS_BACK >= n;)
+		if (memcmp(&known[i], &is, sizeof(is)) == 0)
+			return (uint32_t)i + 1;
+	if (n >= INTERP_ORIGINS_MAX)
+		return INTERP_ORIGINS_MAX;
+	if (n == INTERP_ORIGINS_MAX - 1)
+		is.work = INTERP_ORIGIN_UNTOLD;
+	known = build_table_add(&b->known);
+	if (!known)
+		return 0;
+	*known = is;
+	return (uint32_t)b->known.n;
+}
+
 /* Make room for a segment, and append its last node. */
 static inline int seg_begin(struct interp_build *b,
 			    const struct interp_build_word *w,
@@ -351,8 +396,10 @@ static inline int seg_begin(struct interp_build *b,
 	const bool same = w->cond_letter == b->cond_letter &&
 			  w->cond_number == b->cond_number &&
 			  w->tech == b->tech;
-	const int err = same ? 0 : change_cond(b, w, diag);
+	int err = same ? 0 : change_cond(b, w, diag);
 
+	if (w->origin != b->origin && err == 0)
+		err = change_origin(b, w);
 	if (err < 0)
 		return err;
 	return seg_room(b) < 0 || node_add(b) < 0 ? -ENOMEM : 0;

@@ -37,6 +37,7 @@ static struct interp_program_head layout(const struct interp_build *b)
 		.npieces = b->pieces.n,
 		.nstops = b->stops.n,
 		.nnumbers = b->numbers.n,
+		.norigins = b->origins.n,
 		.nbends = b->naxes > 1 ? (nsegs - 1) / INTERP_BENDS_SEGS + 1 :
 					 0,
 		.naxes = b->naxes,
@@ -59,7 +60,8 @@ static struct interp_program_head layout(const struct interp_build *b)
 	h.pieces_at = h.curves_at + b->curves.n * b->curves.size;
 	h.stops_at = h.pieces_at + b->pieces.n * b->pieces.size;
 	h.numbers_at = h.stops_at + b->stops.n * b->stops.size;
-	h.bends_at = h.numbers_at + b->numbers.n * b->numbers.size;
+	h.origins_at = h.numbers_at + b->numbers.n * b->numbers.size;
+	h.bends_at = h.origins_at + b->origins.n * b->origins.size;
 	h.runs_at = h.bends_at + h.nbends * sizeof(struct interp_bends);
 	h.bytes = h.runs_at + b->runs.n * b->runs.size;
 	return h;
@@ -122,6 +124,7 @@ static void write_tables(struct interp_build *b,
 	move_table(base + h->pieces_at, &b->pieces);
 	move_table(base + h->stops_at, &b->stops);
 	move_table(base + h->numbers_at, &b->numbers);
+	move_table(base + h->origins_at, &b->origins);
 	move_table(base + h->runs_at, &b->runs);
 }
 

@@ -375,6 +375,16 @@ static void number_anew(const struct from *f, size_t nway)
 	}
 }
 
+/* What was left out had its own; the last of these counts for the way. */
+static void place_origins(const struct from *f, size_t nway)
+{
+	struct interp_origin *o = f->b->origins.at;
+
+	for (size_t i = 0; i < f->b->origins.n; i++)
+		o[i].seg = o[i].seg > f->last ?
+			   (uint32_t)(o[i].seg - f->last - 1 + nway) : 0;
+}
+
 static void swap(struct table *a, struct table *b)
 {
 	const struct table t = *a;
@@ -425,6 +435,7 @@ static int join(struct from *f)
 	b->inside.nway = (uint32_t)nway;
 	memcpy(b->first, way->first, sizeof(b->first));
 	number_anew(f, nway);
+	place_origins(f, nway);
 	return 0;
 }
 

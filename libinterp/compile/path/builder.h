@@ -84,6 +84,9 @@ struct interp_build {
 	struct table segs, nodes, arcs;	/* nodes: n counts columns */
 	struct table conds, escapes, runs, couples, bits;
 	struct table curves, pieces, stops, numbers;
+	struct table origins, known;	/* of segments; and all that have a
+					 * number, which is their index + 1 */
+	uint32_t origin;		/* of the last segment */
 	struct build_fit fit;
 	char cond_letter;
 	uint32_t cond_number;

@@ -3,6 +3,7 @@
  * contour.c - between a reader and the builder: what is collected
  */
 #include "wire/contour.h"
+#include "wire/to_build.h"
 
 #include "interp/angle.h"
 #include "grow.h"
@@ -13,21 +14,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-void contour_init(struct contour *k, const struct interp_wire *w,
-		  const struct interp_machine *m, struct interp_build *b)
+/* Where the axes stand, in the places of the program. */
+static void begin_here(struct contour *k)
 {
-	*k = (struct contour) { .n = 0 };
-	k->corner = (enum interp_taper_corner)w->corner;
-	guides_init(&k->guides, w, m, b);
-	memcpy(k->here_mm, interp_build_here(b), sizeof(k->here_mm));
+	guides_here(&k->guides, k->here_mm);
 	guides_planes(&k->guides, k->here_mm, k->at);
-	k->plain = !guides_on(&k->guides) && !(w->corner_angle_deg < 180);
 	if (!guides_on(&k->guides))
 		return;
 	k->here_mm[INTERP_X] = k->at[0].x;
 	k->here_mm[INTERP_Y] = k->at[0].y;
 	k->here_mm[INTERP_U] = k->at[1].x;
 	k->here_mm[INTERP_V] = k->at[1].y;
+}
+
+void contour_init(struct contour *k, const struct interp_wire *w,
+		  const struct interp_machine *m, struct interp_build *b)
+{
+	*k = (struct contour) { .n = 0 };
+	k->corner = (enum interp_taper_corner)w->corner;
+	guides_init(&k->guides, w, m, b);
+	k->plain = !guides_on(&k->guides) && !(w->corner_angle_deg < 180);
+	begin_here(k);
+}
+
+int contour_turn(struct contour *k, double deg, struct interp_diag *diag)
+{
+	int err;
+
+	if (deg == k->guides.turn.deg)
+		return 0;
+	err = contour_flush(k, diag);
+	if (err)
+		return err;
+	k->guides.turn = interp_turn_of(deg);
+	begin_here(k);
+	return 0;
 }
 
 void contour_free(struct contour *k)
@@ -265,7 +286,7 @@ static bool moves(const struct contour *k, const double end_mm[INTERP_NAXES])
 static int stay(struct contour *k, const double end_mm[INTERP_NAXES],
 		const struct interp_build_word *w, struct interp_diag *diag)
 {
-	double to_mm[INTERP_NAXES];
+	double to_mm[INTERP_NAXES], at_mm[INTERP_NAXES];
 	int err;
 
 	if (!moves(k, end_mm))
@@ -276,12 +297,13 @@ static int stay(struct contour *k, const double end_mm[INTERP_NAXES],
 	if (err)
 		return err;
 	memcpy(to_mm, end_mm, sizeof(to_mm));
+	guides_here(&k->guides, at_mm);
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (i <= INTERP_Y || (i >= INTERP_U && guides_on(&k->guides)))
-			to_mm[i] = interp_build_here(k->guides.build)[i];
+			to_mm[i] = at_mm[i];
 	}
 	memcpy(k->here_mm, end_mm, sizeof(k->here_mm));
-	err = interp_build_line(k->guides.build, to_mm, w, diag);
+	err = guides_line(&k->guides, to_mm, w, diag);
 	if (err == -EINVAL)
 		diag->line = w->line;
 	return err;
@@ -323,7 +345,7 @@ int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 	if (!is_idle(k))
 		return collect_line(k, end_mm, w, diag);
 	stand(k, end_mm);
-	err = interp_build_line(k->guides.build, end_mm, w, diag);
+	err = guides_line(&k->guides, end_mm, w, diag);
 	if (err == -EINVAL)
 		diag->line = w->line;
 	return err;
@@ -352,7 +374,7 @@ int contour_arc(struct contour *k, const double end_mm[INTERP_NAXES],
 	int err;
 
 	if (is_idle(k)) {
-		err = interp_build_arc(k->guides.build, end_mm, arc, w, diag);
+		err = guides_arc(&k->guides, end_mm, arc, w, diag);
 		if (err == -EINVAL)
 			diag->line = w->line;
 		stand(k, end_mm);
@@ -392,7 +414,7 @@ int contour_nurbs(struct contour *k, const double end_mm[INTERP_NAXES],
 		err = contour_cut_nurbs(k, end_mm, c, w, diag);
 		return err ? err : 1;
 	}
-	err = interp_build_curve(k->guides.build, c, w, diag);
+	err = guides_curve(&k->guides, c, w, diag);
 	if (err == -EINVAL && !diag->line)
 		diag->line = w->line;
 	stand(k, end_mm);

@@ -66,6 +66,10 @@ void contour_side(struct contour *k, double offset_mm, double slope);
  *  cut it. */
 double contour_tangent(const struct contour *k, double deg);
 
+/** contour_turn() - from here on the places of the program are turned by @deg
+ *  (interp/turn.h); cut what is collected, and see here_mm again. */
+int contour_turn(struct contour *k, double deg, struct interp_diag *diag);
+
 /* These are as the builder's functions of the same names. */
 int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
 		 const struct interp_build_word *w, struct interp_diag *diag);

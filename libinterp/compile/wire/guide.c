@@ -9,7 +9,7 @@
  * other two make a curve that is neither; if the guides stand in the planes
  * it need not be known, else it is cut into chords within a quarter pulse.
  */
-#include "wire/guide.h"
+#include "wire/to_build.h"
 
 #include "interp/angle.h"
 
@@ -130,10 +130,10 @@ static double feed_on_axes(const struct cut *k, const double guide_mm[2])
 static int put(const struct cut *k, const struct interp_build_contour two[2])
 {
 	struct interp_build_word word = *k->w;
-	const double *here = interp_build_here(k->g->build);
-	double end[INTERP_NAXES], guide_mm[2];
+	double here[INTERP_NAXES], end[INTERP_NAXES], guide_mm[2];
 
 	k->g->cuts++;
+	guides_here(k->g, here);
 	memcpy(end, k->end_mm, sizeof(end));
 	for (int i = 0; i < 2; i++) {
 		const int x = i ? INTERP_U : INTERP_X, y = x + 1;
@@ -151,7 +151,7 @@ static int put(const struct cut *k, const struct interp_build_contour two[2])
 		guide_mm[i] = curve_length(&way);
 	}
 	word.feed_mm_s = feed_on_axes(k, guide_mm);
-	return interp_build_pair(k->g->build, end, two, &word, k->diag);
+	return guides_pair(k->g, end, two, &word, k->diag);
 }
 
 static int cut_lines(const struct cut *k)
@@ -290,9 +290,8 @@ static int cut_bottom(const struct cut *k)
 	memcpy(end, k->end_mm, sizeof(end));
 	end[INTERP_X] = c->to.x;
 	end[INTERP_Y] = c->to.y;
-	return c->arc ?
-	       interp_build_arc(k->g->build, end, &arc, k->w, k->diag) :
-	       interp_build_line(k->g->build, end, k->w, k->diag);
+	return c->arc ? guides_arc(k->g, end, &arc, k->w, k->diag) :
+			guides_line(k->g, end, k->w, k->diag);
 }
 
 int guides_cut(struct guides *g, const struct curve c[2],

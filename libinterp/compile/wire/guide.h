@@ -8,6 +8,7 @@
 #define WIRE_GUIDE_H
 
 #include "interp/build.h"
+#include "interp/turn.h"
 #include "interp/wire.h"
 #include "wire/curve.h"
 
@@ -19,6 +20,7 @@ struct guide {
 struct guides {
 	const struct interp_wire *wire;
 	struct interp_build *build;
+	struct interp_turn turn;	/* of the work, toward the builder */
 	struct guide guide[2];		/* of the axes X Y, U V */
 	double height_mm;		/* from plane to plane */
 	double slope_max;		/* tangent of the largest angle */

@@ -89,7 +89,8 @@ int interp_program_map(struct interp_program *p, const void *block,
 	    !table_ok(h, h->pieces_at, h->npieces, sizeof(*p->pieces)) ||
 	    !table_ok(h, h->stops_at, h->nstops, sizeof(*p->stops)) ||
 	    !table_ok(h, h->numbers_at, h->nnumbers, sizeof(*p->numbers)) ||
-	    !table_ok(h, h->bends_at, h->nbends, sizeof(*p->bends)))
+	    !table_ok(h, h->bends_at, h->nbends, sizeof(*p->bends)) ||
+	    !table_ok(h, h->origins_at, h->norigins, sizeof(*p->origins)))
 		return -EBADMSG;
 
 	p->head = h;
@@ -106,6 +107,7 @@ int interp_program_map(struct interp_program *p, const void *block,
 	p->stops = (const void *)(base + h->stops_at);
 	p->numbers = (const void *)(base + h->numbers_at);
 	p->bends = (const void *)(base + h->bends_at);
+	p->origins = (const void *)(base + h->origins_at);
 	for (uint32_t i = 0; i < h->nconds; i++) {
 		if (!interp_tech_ok(&p->conds[i].tech))
 			return -EBADMSG;
@@ -114,6 +116,17 @@ int interp_program_map(struct interp_program *p, const void *block,
 	    p->segs[h->nsegs - 1].kind != INTERP_END)
 		return -EBADMSG;
 	return 0;
+}
+
+const struct interp_origin *
+interp_program_origin(const struct interp_program *p, uint32_t i)
+{
+	const struct interp_origin *of = NULL;
+
+	for (uint64_t k = 0; k < p->head->norigins; k++)
+		if (p->origins[k].seg <= i)
+			of = &p->origins[k];
+	return of;
 }
 
 bool interp_program_seg_ok(const struct interp_program *p, uint32_t i,

@@ -16,7 +16,7 @@ type ElectrodeState = typeof STATES[number];
 
 interface Electrode {
 	n: number; name: string; material: string; note: string; state: ElectrodeState;
-	undersize_mm: number; length_mm: number; wear_mm: number; spark_s: number;
+	undersize_mm: number; length_mm: number; wear_mm: number; x_mm: number; y_mm: number; c_deg: number; spark_s: number;
 	life_mm: number; life_s: number; left: number | null; held: boolean;
 }
 
@@ -55,7 +55,7 @@ function useElectrodes(): { rows: Electrode[] | null; refused: string; again: ()
 
 // The values of a form, by the keys that `edmctl electrode set` takes.
 const WORDS = ["name", "material", "note"] as const;
-const NUMBERS = ["undersize", "length", "wear", "life", "minutes", "sparked"] as const;
+const NUMBERS = ["undersize", "length", "wear", "x", "y", "c", "life", "minutes", "sparked"] as const;
 type Form = Record<typeof WORDS[number] | typeof NUMBERS[number] | "state", string>;
 
 function formOf(e: Electrode | null): Form {
@@ -63,6 +63,7 @@ function formOf(e: Electrode | null): Form {
 	return {
 		name: e?.name ?? "", material: e?.material ?? "", note: e?.note ?? "", state: e?.state ?? "there",
 		undersize: one(e?.undersize_mm), length: one(e?.length_mm), wear: one(e?.wear_mm),
+		x: one(e?.x_mm), y: one(e?.y_mm), c: one(e?.c_deg),
 		life: one(e?.life_mm), minutes: one((e?.life_s ?? 0) / 60), sparked: one((e?.spark_s ?? 0) / 60),
 	};
 }
@@ -103,7 +104,7 @@ function ElectrodeSheet(p: { e: Electrode | null; onClose: () => void }): JSX.El
 			{!p.e && <NumberField id="el-n" label={t("el.number")} value={n} onInput={name} />}
 			<TextField id="el-name" label={t("el.name")} max={31} value={form.name} onInput={put("name")} />
 			<TextField id="el-material" label={t("el.material")} max={31} value={form.material} onInput={put("material")} />
-			{NUMBERS.map((k) => <NumberField id={`el-${k}`} key={k} label={t(`el.${k}`)} unit={k === "minutes" || k === "sparked" ? t("unit.min") : "mm"} value={form[k]} onInput={put(k)} />)}
+			{NUMBERS.map((k) => <NumberField id={`el-${k}`} key={k} label={t(`el.${k}`)} unit={k === "minutes" || k === "sparked" ? t("unit.min") : k === "c" ? "deg" : "mm"} value={form[k]} onInput={put(k)} />)}
 			<TextField id="el-note" label={t("el.note")} max={100} value={form.note} onInput={put("note")} />
 		</div>
 		<div class="field"><span>{t("el.state")}</span><Choice label={t("el.state")} value={form.state as ElectrodeState} onChange={put("state")} of={STATES.map((v) => ({ value: v, text: t(`el.${v}`) }))} /></div>

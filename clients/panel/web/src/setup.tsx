@@ -12,7 +12,7 @@ import { Card, Choice, HoldKey, Key, NumberField, PressKey, act } from "./parts"
 import { beginPress } from "./press";
 import { PROBES, isWhole, type Probe, type ProbeId, type Values } from "./probes";
 import { say, useAsk } from "./use";
-import { t } from "./words";
+import { t, type Word } from "./words";
 
 const STEPS = ["0.001", "0.01", "0.1", "1", "10"] as const;
 
@@ -83,6 +83,9 @@ function Drawing(p: { id: ProbeId; v: Record<string, string> }): JSX.Element {
 		hole: <g><path class="work" fill-rule="evenodd" d="M30 8h140v104H30zM100 18a42 42 0 1 0 .1 0z" /><circle class="tool" cx="92" cy="64" r="10" /><path class="way" d="M104 64h32m-6 -4 6 4 -6 4M80 64H62m6 -4 -6 4 6 4M92 52V24m-4 6 4 -6 4 6M92 76v20m-4 -6 4 6 4 -6" /><path class="cross" d="M96 60h8m-4 -4v8" /></g>,
 		block: <g><rect class="work" x="62" y="28" width="76" height="64" /><circle class="tool" cx="100" cy="60" r="9" /><path class="way" d="M26 60h30m-6 -4 6 4 -6 4M174 60h-30m6 -4 -6 4 6 4M100 6v16m-4 -6 4 6 4 -6M100 114V98m-4 6 4 -6 4 6" /><path class="cross" d="M96 60h8m-4 -4v8" /></g>,
 		length: <g><rect class="work" x="20" y="92" width="160" height="20" /><path class="tool" d="M78 12h44v18h-8v40h-28V30h-8z" /><path class="way" d="M100 73v15m-5 -6 5 6 5 -6M140 30v40m-4 -36 4 -4 4 4M136 66l4 4 4 -4" /></g>,
+		skew: <g><path class="work" d="M16 84 184 68v46H16z" /><circle class="tool" cx="50" cy="40" r="10" /><circle class="tool" cx="150" cy="32" r="10" /><path class="way" d="M50 52v24m-5 -7 5 7 5 -7M150 44v21m-5 -7 5 7 5 -7M66 22h66m-7 -5 7 5 -7 5" /></g>,
+		middle: <g><circle class="work" cx="100" cy="60" r="26" /><rect class="tool" x="82" y="46" width="28" height="28" /><path class="way" d="M30 60h38m-6 -4 6 4 -6 4M170 60h-38m6 -4 -6 4 6 4M100 6v20m-4 -6 4 6 4 -6M100 114V94m-4 6 4 -6 4 6" /><path class="cross" d="M96 60h8m-4 -4v8" /></g>,
+		straight: <g><circle class="work" cx="100" cy="98" r="12" /><path class="tool" d="M40 40 150 30l2 26L42 66z" /><path class="way" d="M60 70v24m-5 -7 5 7 5 -7M140 62v22m-5 -7 5 7 5 -7M168 20a30 30 0 0 1 8 34m-7 -3 7 3 3 -8" /></g>,
 		corner: <g transform={`translate(100 60) scale(${p.v.wayX === "-" ? -1 : 1} ${p.v.wayY === "-" ? 1 : -1}) translate(-100 -60)`}><path class="work" d="M130 10h40v102H20V84h110z" /><circle class="tool" cx="90" cy="44" r="11" /><path class="way" d="M104 44h20m-6 -4 6 4 -6 4M90 58v20m-4 -6 4 6 4 -6" /></g>,
 	};
 	return <svg class="drawing" viewBox="0 0 200 120" aria-hidden="true">{art[p.id]}</svg>;
@@ -92,14 +95,27 @@ function Drawing(p: { id: ProbeId; v: Record<string, string> }): JSX.Element {
 type Before = Record<string, number>;
 interface Felt { job: string; target: string; was: Before }
 
-function useBefore(target: string, axes: string[] | null): [Before, () => void] {
+interface Seat { n: number; length_mm: number; wear_mm: number; x_mm: number; y_mm: number; c_deg: number }
+
+/* The values of these keys, of a system or of the electrode in the holder. */
+function useBefore(target: string, electrode: boolean, keys: string[]): [Before, () => void] {
 	const held = link.state.electrode;
 	const [rows, , look] = useAsk<OffsetRow[]>("offsets", {}, LOOK_MS);
-	const [own, , lookOwn] = useAsk<{ n: number; length_mm: number; wear_mm: number }[]>("electrodes", { arg: Math.max(0, held - 1) }, LOOK_MS);
-	const row = rows?.find((r) => r.work === target), e = own?.find((x) => x.n === held);
-	const now: Before = axes ? Object.fromEntries(axes.map((a) => [a, Number(row?.[a] ?? 0)])) :
-		e ? { [t("el.length")]: e.length_mm - e.wear_mm } : {};
+	const [own, , lookOwn] = useAsk<Seat[]>("electrodes", { arg: Math.max(0, held - 1) }, LOOK_MS);
+	const e = own?.find((x) => x.n === held);
+	const row: Record<string, unknown> = electrode ? { ...e, long_mm: e && e.length_mm - e.wear_mm } : { ...rows?.find((r) => r.work === target) };
+	const now: Before = Object.fromEntries(keys.filter((key) => typeof row[key] === "number").map((key) => [key, row[key] as number]));
 	return [now, () => { look(); lookOwn(); }];
+}
+
+const NAMES: Record<string, Word> = { turn_deg: "off.turn", tilt_x_deg: "off.tiltx", tilt_y_deg: "off.tilty", long_mm: "el.length", x_mm: "el.x", y_mm: "el.y", c_deg: "el.c" };
+
+function nameOf(key: string): string {
+	return NAMES[key] ? t(NAMES[key]) : key;
+}
+
+function unitOf(key: string): string {
+	return key.endsWith("_deg") || "ABC".includes(key) ? "\u00b0" : " mm";
 }
 
 /* The job that feels, until it is over. */
@@ -123,19 +139,19 @@ function useFelt(felt: Felt | null, over: () => void): string {
 
 function Changes(p: { target: string; felt: Felt | null; state: string; now: Before }): JSX.Element {
 	const { felt, now } = p, done = felt && p.state === "done";
-	const mm = (x: number | undefined) => x === undefined ? "\u2013" : number(x, 3);
+	const value = (x: number | undefined, key: string) => x === undefined ? "\u2013" : number(x, key.endsWith("_deg") ? 4 : 3) + unitOf(key);
 	return <div class="felt" role="status"><table class="list"><thead><tr><th scope="col">{p.target}</th><th scope="col" class="n">{t(done ? "touch.was" : "touch.now")}</th>{done && <th scope="col" class="n">{t("touch.is")}</th>}</tr></thead>
-		<tbody>{Object.keys(now).map((a) => <tr key={a}><th scope="row">{a}</th><td class="n">{mm(done ? felt.was[a] : now[a])} mm</td>{done && <td class="n"><b>{mm(now[a])}</b> mm</td>}</tr>)}</tbody></table>
+		<tbody>{Object.keys(now).map((a) => <tr key={a}><th scope="row">{nameOf(a)}</th><td class="n">{value(done ? felt.was[a] : now[a], a)}</td>{done && <td class="n"><b>{value(now[a], a)}</b></td>}</tr>)}</tbody></table>
 		{felt && p.state !== "done" && <p class={p.state ? "warn" : "note"}>{p.state ? t("touch.failed", { why: p.state }) : t("touch.feels")}</p>}</div>;
 }
 
 function ProbeForm(p: { probe: Probe }): JSX.Element {
 	const [v, set] = useState<Values>(() => Object.fromEntries(p.probe.asks.map((a) => [a.key, a.preset])));
 	const [work, into] = useState<string>("G54"), [felt, feel] = useState<Felt | null>(null);
-	const axes = p.probe.axes(v), target = axes ? work : `T${link.state.electrode}`;
-	const [now, look] = useBefore(target, axes), state = useFelt(felt, look);
+	const own = !!p.probe.electrode, target = own ? `T${link.state.electrode}` : work;
+	const [now, look] = useBefore(target, own, p.probe.shows(v)), state = useFelt(felt, look);
 	const whole = isWhole(p.probe, v), words = whole ? [target, ...p.probe.words(v)] : [];
-	const why = !whole ? t("probe.bad") : !axes && !link.state.electrode ? t("touch.none") : link.state.loaded ? t("no.loaded") : whyNot("send");
+	const why = !whole ? t("probe.bad") : own && !link.state.electrode ? t("touch.none") : link.state.loaded ? t("no.loaded") : whyNot("send");
 	const change = (key: string, text: string) => set({ ...v, [key]: text });
 	const run = async () => {
 		const a = await link.ask("offset", { text: words.join("\n") });
@@ -143,7 +159,7 @@ function ProbeForm(p: { probe: Probe }): JSX.Element {
 		else feel({ job: a.reason, target, was: now });
 	};
 	return <div class="probe"><div class="probe-top"><Drawing id={p.probe.id} v={v} /><p>{t(`probe.${p.probe.id}.about`)}</p></div>
-		{axes && <div class="field"><span>{t("touch.into")}</span><Choice label={t("touch.into")} value={work} onChange={(w) => { into(w); feel(null); }} of={WORKS.map((w) => ({ value: w, text: w }))} /></div>}
+		{!own && <div class="field"><span>{t("touch.into")}</span><Choice label={t("touch.into")} value={work} onChange={(w) => { into(w); feel(null); }} of={WORKS.map((w) => ({ value: w, text: w }))} /></div>}
 		<div class="fields">{p.probe.asks.map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.map((c) => ({ value: c, text: c === "new" || c === "worn" ? t(`touch.${c}`) : c.replace("-", "\u2212") }))} /></label> :
 			<NumberField key={a.key} label={a.may ? `${t(a.label)} (${t("probe.nozero")})` : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
 		<Changes target={target} felt={felt} state={state} now={now} />

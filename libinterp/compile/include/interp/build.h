@@ -74,6 +74,8 @@ struct interp_build_word {
 	uint32_t cond_number;
 	const struct interp_tech *tech;	/* of that condition, copied; NULL:
 					 * nothing given */
+	uint32_t origin;		/* of interp_build_origin(); 0: that of
+					 * the last segment */
 };
 
 /*
@@ -215,6 +217,13 @@ int interp_build_curve(struct interp_build *b,
 		       const struct interp_build_curve *c,
 		       const struct interp_build_word *w,
 		       struct interp_diag *diag);
+
+/**
+ * interp_build_origin() - the number of @o (its seg does not count) for the
+ * words of motions; equal ones have one number.  Return: 0: it is not told.
+ */
+uint32_t interp_build_origin(struct interp_build *b,
+			     const struct interp_origin *o);
 
 /** interp_build_action() - something that is done without motion.
  *  @kind INTERP_DWELL or later, @arg as struct interp_seg says. */

@@ -53,8 +53,9 @@ struct interp_refused {
 /* An electrode as a program needs it: docs/electrodes.md. */
 struct interp_electrode {
 	uint32_t number;		/* of its T word */
-	double offset_mm;		/* its length minus its wear: what Z is
-					 * shifted by; + is up */
+	double by[INTERP_NAXES];	/* what the axes are shifted by: Z by
+					 * its length minus its wear; X Y, at
+					 * C 0, and C */
 };
 
 struct interp_electrodes {
@@ -84,6 +85,8 @@ struct interp_delivery {
 struct interp_nc_options {
 	const struct interp_machine *machine;
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];
+	double work_turn_deg[INTERP_NC_NWORK];	/* about its origin, from X
+						 * toward Y */
 	const struct interp_wire *wire;	/* lent; NULL: no guides, no corners */
 	double offset_mm[INTERP_NOFFSETS];	/* D and H; 0: not filled */
 	const struct interp_kinematics *kinematics;	/* lent; NULL: no

@@ -52,7 +52,7 @@
 #define INTERP_FAR_BESIDE	1e4
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	15
+#define INTERP_PROGRAM_VERSION	16
 
 /*
  * How three and more axes make a line when they move one at a time.
@@ -294,6 +294,21 @@ enum interp_escape_mode {
 	INTERP_NESCAPE_MODES
 };
 
+/* Where a program counts from, from segment `seg` to that of the next entry.
+ * Turned back by turn_deg about machine zero, a machine place is mm more than
+ * the place that is programmed.  It has the work offset, what the program
+ * shifts it by, and the electrode.  Only for those who tell people: the cycle
+ * does not look at it. */
+struct interp_origin {
+	uint32_t seg;
+	uint32_t work;			/* 0: G54 ...; INTERP_ORIGIN_UNTOLD */
+	double turn_deg;		/* + from X toward Y; U V alike */
+	double mm[INTERP_NAXES];
+};
+
+#define INTERP_ORIGINS_MAX	4096u	/* those behind them are not told */
+#define INTERP_ORIGIN_UNTOLD	255u
+
 /* What was felt before a program begins, if it is the rest of one that was
  * interrupted.  All 0: nothing. */
 struct interp_probed {
@@ -342,6 +357,7 @@ struct interp_program_head {
 	uint64_t ncurves, curves_at, npieces, pieces_at;
 	uint64_t nstops, stops_at, nnumbers, numbers_at;
 	uint64_t nbends, bends_at;	/* 0, or enough for all segments */
+	uint64_t norigins, origins_at;	/* by seg; 0: nobody said */
 	double pulse_mm[INTERP_NAXES];
 	int32_t start_pulses[INTERP_NAXES];	/* of every axis, at node 0 */
 	struct interp_probed probed;
@@ -368,6 +384,7 @@ struct interp_program {
 	const struct interp_nurbs_stop *stops;
 	const double *numbers;
 	const struct interp_bends *bends;
+	const struct interp_origin *origins;
 };
 
 /**
@@ -380,6 +397,13 @@ struct interp_program {
  */
 int interp_program_map(struct interp_program *p, const void *block,
 		       size_t bytes);
+
+/**
+ * interp_program_origin() - the one of segment @i; NULL: nobody said.  The work
+ * grows with their number.  Any thread, not the cycle.
+ */
+const struct interp_origin *
+interp_program_origin(const struct interp_program *p, uint32_t i);
 
 /**
  * interp_program_seg_ok() - is segment @i safe to walk?  @seg is a copy of it.
