@@ -509,8 +509,7 @@ def test_jobs_that_wait_change_places(p, page):
     expect(names).to_have_text(["one.ngc", "two.ngc", "three.ngc"])
     page.get_by_role("button", name="three.ngc: earlier").click()
     expect(names).to_have_text(["one.ngc", "three.ngc", "two.ngc"])
-    for _ in range(3):
-        end_job_of_queue(p)
+    end_jobs_of_queue(p)
     p.machine.client.status_where(lambda s: not s.job, 20)
 
 
@@ -530,26 +529,35 @@ def test_a_long_queue_is_shown_page_by_page(p, page):
     expect(more).to_be_visible()
     first = rows.count()
     assert 100 < first < 422
-    while more.count():
+    # While nobody answers, what is known stays: the rows, and that there are more.
+    os.kill(p.machine.jobs.pid, signal.SIGSTOP)
+    try:
+        expect(page.locator(".two > :first-child .note")).to_be_visible()
+        assert (rows.count(), more.count()) == (first, 1)
+    finally:
+        os.kill(p.machine.jobs.pid, signal.SIGCONT)
+    while rows.count() < 422:
         shown = rows.count()
         more.click()
         expect(rows.nth(shown)).to_be_attached()
-        if rows.count() == 422:
-            expect(more).to_have_count(0)
     expect(rows).to_have_count(422)
+    expect(more).to_have_count(0)
     with rig.store_of(p.machine) as db:
         db.execute("DELETE FROM job WHERE id LIKE 'job-%'")
     expect(rows).to_have_count(2)
-    for _ in range(2):
-        end_job_of_queue(p)
+    end_jobs_of_queue(p)
     p.machine.client.status_where(lambda s: not s.job, 20)
 
 
-def end_job_of_queue(p):
-    """The job that is first in the queue, whatever it is."""
-    with p.session().live() as live:
-        for job in live.ask("queue")["body"]:
+def end_jobs_of_queue(p):
+    """All of them: one that is being loaded is not removed before it is."""
+    def none():
+        jobs = live.ask("queue")["body"]
+        for job in jobs:
             live.ask("remove", job=job["job"])
+        return not jobs
+    with p.session().live() as live:
+        rig.until(none, 20, 0.1)
 
 
 def test_the_panel_dies_and_comes_back(p, page):

@@ -74,7 +74,8 @@ export function usePages<T extends { job: string }>(what: string, more: Record<s
 			busy = true;
 			const r = await readPages<T>(what, more, pages);
 			busy = false;
-			if (live) set((was) => ({ ...r, rows: r.rows ?? was.rows }));
+			/* What was refused says nothing of how many there are. */
+			if (live) set((was) => r.rows ? r : { ...was, refused: r.refused });
 		};
 		if (open) void ask();
 		const timer = open ? setInterval(() => void ask(), everyMs) : 0;
