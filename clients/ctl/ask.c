@@ -262,12 +262,12 @@ static void print_names(const char *job, const char *name, struct wide w)
 	       w.name + 1 - characters(name), "");
 }
 
-/* "-": nobody has looked yet; "?": that cannot be told. */
+/* "-": nobody has looked yet, or it is put off; "?": that cannot be told. */
 static void forecast_text(char *to, size_t size, json_t *job)
 {
 	const double s = ctl_number_of(job, "forecast_s");
 
-	if (!json_is_number(json_object_get(job, "forecast_s")))
+	if (!json_is_number(json_object_get(job, "forecast_s")) || s < -1)
 		snprintf(to, size, "-");
 	else if (s < 0)
 		snprintf(to, size, "?");
@@ -277,14 +277,15 @@ static void forecast_text(char *to, size_t size, json_t *job)
 
 static void print_queued(json_t *job)
 {
+	const char *why = ctl_text_of(job, "forecast_why");
 	char at[32], takes[32];
 
 	ctl_when(at, job, "submitted_us");
 	forecast_text(takes, sizeof(takes), job);
-	printf("%-8s %9.0f  %s  %16s%s\n", ctl_text_of(job, "state"),
+	printf("%-8s %9.0f  %s  %16s%s%s%s\n", ctl_text_of(job, "state"),
 	       ctl_number_of(job, "lines"), at, takes,
 	       json_is_true(json_object_get(job, "hold")) ?
-	       "  waits for start" : "");
+	       "  waits for start" : "", *why ? "  no forecast: " : "", why);
 }
 
 static void print_ended(json_t *job)

@@ -30,6 +30,7 @@ struct forecasting {
 	uint32_t n;			/* of the job */
 	char id[64], name[64];
 	int block;			/* its program; -1: program.<n> */
+	double most_s;
 	int err;
 	struct forecast forecast;
 	char electrode[64], work[64];
@@ -63,7 +64,8 @@ static int forecaster_work(struct forecasting *f)
 		return err;
 	err = interp_program_map(&p, block, bytes);
 	if (err == 0)
-		err = forecast_make(&f->forecast, f->config, &p, &f->ends);
+		err = forecast_make(&f->forecast, f->config, &p, f->most_s,
+				    &f->ends);
 	shm_program_unmap(block, bytes);
 	return err;
 }
@@ -149,24 +151,40 @@ static double whole_s(struct jobs *j, const struct forecasting *f)
 static void tell(struct jobs *j, const struct forecasting *f, double s)
 {
 	const struct jobs_note n = { .kind = "forecast", .job = f->id };
+	const char *why = *f->forecast.why_not ? f->forecast.why_not :
+			  f->err ? strerror(-f->err) : "";
 	const int min = (int)(s / 60);
 
-	store_set_forecast(j->store, f->n, s);
+	store_set_forecast(j->store, f->n, s, s < 0 ? why : "");
 	queue_recount(j);
 	if (s < 0)
-		jobs_note(j, &n, "job %s: how long it takes cannot be told: %s",
-			  f->name, f->forecast.why_not ? f->forecast.why_not :
-			  strerror(-f->err));
+		jobs_note(j, &n, "job %s: no forecast: how long it takes cannot be told: %s",
+			  f->name, why);
 	else
 		jobs_note(j, &n, "job %s takes %d h %02d min %02d s, by "
 			  "forecast", f->name, min / 60, min % 60,
 			  (int)s % 60);
 }
 
+/* It comes again when nobody waits for a first look. */
+static void put_off(struct jobs *j, const struct forecasting *f)
+{
+	if (f->block < 0) {
+		j->forecaster.put_off = true;
+		return;
+	}
+	store_set_forecast(j->store, f->n, STORE_PUT_OFF, "");
+	j->forecaster.looks_later = true;
+}
+
 static void take(struct jobs *j, struct forecasting *f)
 {
 	struct forecaster *to = &j->forecaster;
 
+	if (f->err == -ETIME) {
+		put_off(j, f);
+		return;
+	}
 	correct_materials(j, f);
 	tell(j, f, whole_s(j, f));
 	if (f->block >= 0 || j->queue.job.n != f->n)
@@ -193,7 +211,8 @@ static int on_forecast(sd_event_source *source, int fd, uint32_t events,
 }
 
 /* @block belongs to it. */
-static int begin(struct jobs *j, const struct store_job *job, int block)
+static int begin(struct jobs *j, const struct store_job *job, int block,
+		 double most_s)
 {
 	struct forecasting *f = calloc(1, sizeof(*f));
 	int err;
@@ -204,6 +223,7 @@ static int begin(struct jobs *j, const struct store_job *job, int block)
 	f->config = j->config;
 	f->n = job->n;
 	f->block = block;
+	f->most_s = most_s;
 	snprintf(f->id, sizeof(f->id), "%s", job->id);
 	snprintf(f->name, sizeof(f->name), "%s", job->name);
 	snprintf(f->machine, sizeof(f->machine), "%s", j->machine);
@@ -254,19 +274,23 @@ static void on_compiled(void *arg, struct compiler_result *r)
 	free(f->text);
 	f->text = NULL;
 	/* Why it cannot be compiled is told when it is loaded. */
-	if (block < 0 || begin(j, &f->next, block) < 0)
-		store_set_forecast(j->store, f->next.n, -1);
+	if (block < 0 || begin(j, &f->next, block, f->most_s) < 0)
+		store_set_forecast(j->store, f->next.n, -1, r->err == -EINVAL ?
+				   "it does not compile" : strerror(-r->err));
 }
 
-static void look(struct jobs *j)
+/* @later: of those that were put off. */
+static void look(struct jobs *j, bool later)
 {
 	struct forecaster *f = &j->forecaster;
+	bool *looks = later ? &f->looks_later : &f->looks;
 	struct compiler_request r;
 	size_t bytes = 0;
 	int err;
 
-	f->looks = store_unforecast(j->store, &f->next) == 0;
-	if (!f->looks)
+	*looks = store_unforecast(j->store, later, &f->next) == 0;
+	f->most_s = later ? FORECAST_S_MAX : FORECASTER_FIRST_S;
+	if (!*looks)
 		return;
 	err = load_request(j, &f->next, &r);
 	if (err == 0 && !*r.text_file)
@@ -279,7 +303,21 @@ static void look(struct jobs *j)
 		return;
 	free(f->text);
 	f->text = NULL;
-	store_set_forecast(j->store, f->next.n, -1);
+	store_set_forecast(j->store, f->next.n, -1, strerror(-err));
+}
+
+/* A long one under way is put off again for one that has none yet. */
+static void make_way(struct jobs *j)
+{
+	struct forecaster *f = &j->forecaster;
+	struct store_job first;
+
+	f->looks = store_unforecast(j->store, false, &first) == 0;
+	if (!f->looks || atomic_load(&f->now->ends))
+		return;
+	atomic_store(&f->now->ends, true);
+	f->put_off = f->now->block < 0;
+	f->looks_later = f->looks_later || f->now->block >= 0;
 }
 
 static void begin_one(struct jobs *j)
@@ -288,19 +326,28 @@ static void begin_one(struct jobs *j)
 	struct forecaster *f = &j->forecaster;
 	const bool loaded = q->job.n && f->of != q->job.n &&
 			    q->snap.program == q->job.n;
+	const bool may = j->link.state == LINK_OK && !q->compile;
 
 	if (f->now && (loaded || (f->now->block < 0 &&
 				  f->now->n != q->job.n)))
 		atomic_store(&f->now->ends, true);
 	if (!q->job.n)
 		f->of = 0;
+	if (f->now && f->now->most_s > FORECASTER_FIRST_S && f->looks)
+		make_way(j);
 	if (f->now || f->compile)
 		return;
 	if (loaded) {
 		f->of = q->job.n;
-		begin(j, &q->job, -1);
-	} else if (f->looks && j->link.state == LINK_OK && !q->compile) {
-		look(j);
+		f->put_off = false;
+		begin(j, &q->job, -1, FORECASTER_FIRST_S);
+	} else if (f->looks && may) {
+		look(j, false);
+	} else if (f->put_off && f->of == q->job.n) {
+		begin(j, &q->job, -1, FORECAST_S_MAX);
+		f->put_off = false;
+	} else if (f->looks_later && may) {
+		look(j, true);
 	}
 }
 

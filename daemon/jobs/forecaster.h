@@ -10,6 +10,9 @@
  * machine time.  Until it is done there is no estimate.  For a job that is
  * loaded, or if this service ends, it gives up.
  *
+ * One that takes longer than FORECASTER_FIRST_S of machine time is put off, also
+ * the one in the machine: those that have none yet come first.
+ *
  * Threads: one, that of the event loop, which also gets the result.
  */
 #ifndef JOBS_FORECASTER_H
@@ -18,6 +21,8 @@
 #include <stdint.h>
 
 #include "store.h"
+
+#define FORECASTER_FIRST_S	20000.0
 
 struct compiler;
 struct forecasting;
@@ -28,8 +33,11 @@ struct forecaster {
 	struct forecasting *now;	/* NULL: none is under way */
 	uint32_t of;			/* the job in the machine that was run
 					 * last, or is */
+	bool put_off;			/* ... and takes long */
 	bool looks;			/* there may be jobs that wait and have
 					 * no forecast */
+	bool looks_later;		/* ... or were put off */
+	double most_s;			/* of the next one */
 	struct compiler *compile;	/* of one of these; NULL: none */
 	struct store_job next;		/* that one ... */
 	char *text;			/* ... and its text, if it is short */

@@ -7,6 +7,7 @@
 #include "plain.h"
 
 #include <errno.h>
+#include <math.h>
 #include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -223,15 +224,16 @@ int store_head(struct store *s, struct store_job *ret)
 	return job_get(q, err, ret);
 }
 
-int store_unforecast(struct store *s, struct store_job *ret)
+int store_unforecast(struct store *s, bool later, struct store_job *ret)
 {
 	int err;
 	sqlite3_stmt *q = store_ask(s, &err, "SELECT " JOB_COLUMNS " FROM job "
 				    "INDEXED BY job_by_turn WHERE state IN "
 				    "('queued', 'interrupted') AND "
 				    "+state='queued' AND loaded=0 AND "
-				    "forecast_s IS NULL ORDER BY "
-				    STORE_IN_QUEUE " LIMIT 1", "");
+				    "forecast_s IS ? ORDER BY " STORE_IN_QUEUE
+				    " LIMIT 1", "d", later ? STORE_PUT_OFF :
+				    NAN);
 
 	return job_get(q, err, ret);
 }
@@ -349,10 +351,12 @@ int store_set_tech(struct store *s, uint32_t n, const char *sha256)
 			"sI", sha256, (int64_t)n);
 }
 
-int store_set_forecast(struct store *s, uint32_t n, double forecast_s)
+int store_set_forecast(struct store *s, uint32_t n, double forecast_s,
+		       const char *why)
 {
-	return store_do(s, STORE_KEEP, "UPDATE job SET forecast_s=? WHERE n=?",
-			"dI", forecast_s, (int64_t)n);
+	return store_do(s, STORE_KEEP, "UPDATE job SET forecast_s=?, "
+			"forecast_why=? WHERE n=?", "dsI", forecast_s, why,
+			(int64_t)n);
 }
 
 int store_interrupt(struct store *s, uint32_t n, const char *at)

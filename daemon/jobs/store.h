@@ -186,10 +186,15 @@ int store_end(struct store *s, uint32_t n, const struct store_end *e);
 int store_give_up(struct store *s, uint32_t n, const char *reason,
 		  int64_t now_us);
 int store_set_tech(struct store *s, uint32_t n, const char *sha256);
-/** store_set_forecast() - it will take @s; -1: that cannot be told. */
-int store_set_forecast(struct store *s, uint32_t n, double forecast_s);
-/** store_unforecast() - the first that waits and has no forecast. */
-int store_unforecast(struct store *s, struct store_job *ret);
+#define STORE_PUT_OFF	(-2.0)
+
+/** store_set_forecast() - it will take @s; -1: that cannot be told, and @why;
+ *  STORE_PUT_OFF: not yet. */
+int store_set_forecast(struct store *s, uint32_t n, double forecast_s,
+		       const char *why);
+/** store_unforecast() - the first that waits and has no forecast; @later: that
+ *  was put off. */
+int store_unforecast(struct store *s, bool later, struct store_job *ret);
 /** store_interrupt() - @at: its checkpoint, hex, for store_resume_at(). */
 int store_interrupt(struct store *s, uint32_t n, const char *at);
 /**

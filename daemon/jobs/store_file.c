@@ -154,6 +154,9 @@ static const char *const steps[] = {
 	"ALTER TABLE worn ADD COLUMN x_mm REAL NOT NULL DEFAULT 0;"
 	"ALTER TABLE worn ADD COLUMN y_mm REAL NOT NULL DEFAULT 0;"
 	"ALTER TABLE worn ADD COLUMN c_deg REAL NOT NULL DEFAULT 0;",
+
+	/* Why that cannot be told. */
+	"ALTER TABLE job ADD COLUMN forecast_why TEXT NOT NULL DEFAULT '';",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

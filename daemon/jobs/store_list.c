@@ -43,7 +43,7 @@
 			"'state', state, 'hold', json(iif(hold, 'true', " \
 			"'false')), 'lines', lines, 'submitted_us', " \
 			"submitted_us, 'reason', reason, 'forecast_s', " \
-			"forecast_s)"
+			"forecast_s, 'forecast_why', forecast_why)"
 
 /* What it came to.  Energy is null where the machine does not count it. */
 #define SUMS_JSON	", 'first_us', first_us, 'erode_s', erode_s, " \

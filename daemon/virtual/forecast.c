@@ -8,6 +8,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #define LOOK_CYCLES	4096		/* between two looks at `ends` */
@@ -21,6 +22,7 @@ struct run {
 	struct forecast_part now;	/* the part that is being measured */
 	uint64_t counted;		/* periods of the job */
 	double far_mm;
+	double most_s, stuck_s;
 };
 
 static void put_together(struct run *r)
@@ -89,25 +91,58 @@ static void measure(struct run *r)
 	}
 }
 
+static void say_why_not(struct run *r, const char *what)
+{
+	snprintf(r->to->why_not, sizeof(r->to->why_not), "%s", what);
+}
+
+/* A dwell says itself how long it stands. */
+static bool is_stuck(struct run *r, double was_mm)
+{
+	const struct cycle *c = &r->v.cycle;
+
+	r->stuck_s = c->far_mm > was_mm || c->job.dwelling ? 0 :
+		     r->stuck_s + r->period_s;
+	if (r->stuck_s <= FORECAST_STUCK_S)
+		return false;
+	snprintf(r->to->why_not, sizeof(r->to->why_not), "it does not get on "
+		 "behind %.3f mm, in line %u, for %.0f min", c->far_mm,
+		 c->cursor.seg.line, FORECAST_STUCK_S / 60);
+	return true;
+}
+
+/* Return: 1: it goes on; 0: there is a reason; -errno. */
+static int may_go_on(const struct run *r, uint64_t n)
+{
+	if (n % LOOK_CYCLES == 0 && atomic_load(r->ends))
+		return -ECANCELED;
+	if ((double)n * r->period_s <= r->most_s)
+		return 1;
+	return r->most_s < FORECAST_S_MAX ? -ETIME : 0;
+}
+
 static int go(struct run *r)
 {
 	const struct cycle *c = &r->v.cycle;
 
 	for (uint64_t n = 1; !virtual_is_over(&r->v); n++) {
-		if (n % LOOK_CYCLES == 0 && atomic_load(r->ends))
-			return -ECANCELED;
-		if ((double)n * r->period_s > FORECAST_S_MAX) {
-			r->to->why_not = "it takes too long";
-			return 0;
-		}
+		const double was_mm = c->far_mm;
+		const int on = may_go_on(r, n);
+
+		if (on == 0)
+			say_why_not(r, "it takes longer than 277 hours");
+		if (on <= 0)
+			return on;
 		if (virtual_stands(&r->v))
 			virtual_go_on(&r->v);
 		virtual_step(&r->v);
 		measure(r);
+		if (is_stuck(r, was_mm))
+			return 0;
 	}
 	end_part(r, INFINITY);
 	if (c->state == STATE_FAULT)
-		r->to->why_not = fault_name(c->fault.first);
+		say_why_not(r, fault_name(c->fault.first));
 	return 0;
 }
 
@@ -127,7 +162,8 @@ static int begin(struct forecast *f, const struct interp_program *p)
 }
 
 int forecast_make(struct forecast *ret, const struct machine_config *c,
-		  const struct interp_program *p, const atomic_bool *ends)
+		  const struct interp_program *p, double most_s,
+		  const atomic_bool *ends)
 {
 	struct run *r = calloc(1, sizeof(*r));
 	int err;
@@ -137,6 +173,7 @@ int forecast_make(struct forecast *ret, const struct machine_config *c,
 		return -ENOMEM;
 	r->to = ret;
 	r->ends = ends;
+	r->most_s = fmin(most_s, FORECAST_S_MAX);
 	r->period_s = (double)config_period_ns(c) * 1e-9;
 	r->step_s = STEP_S;
 	err = begin(ret, p);
@@ -151,7 +188,7 @@ int forecast_make(struct forecast *ret, const struct machine_config *c,
 	free(r);
 	if (err)
 		forecast_free(ret);
-	else if (ret->why_not)
+	else if (*ret->why_not)
 		ret->nparts = 0;
 	return err;
 }

@@ -7,6 +7,9 @@
  * place reached was in it: what went into cutting, with the jumps and retracts
  * of it, and the rest.  Time does not run while a job is held.
  *
+ * A job whose place does not get on has no end: it is given up, and its reason
+ * says where.  One that takes long may be put off: others come first.
+ *
  * Threads: one object belongs to one thread.
  */
 #ifndef VIRTUAL_FORECAST_H
@@ -21,6 +24,8 @@
 #define FORECAST_PARTS	4096		/* at most; neighbours of more are put
 					 * together */
 #define FORECAST_S_MAX	1e6		/* a job that takes longer has none */
+#define FORECAST_STUCK_S 3600.0		/* ... nor one whose place does not get
+					 * on for so long, dwells left out */
 
 struct forecast_part {
 	double to_mm;			/* it ends there, and the next begins */
@@ -35,20 +40,22 @@ struct forecast {
 	double cut_s, other_s;		/* of all parts */
 	uint32_t nconds;
 	char (*cond)[16];		/* their names; "" is that of 0 */
-	const char *why_not;		/* it has no parts; NULL: it has */
+	char why_not[96];		/* it has no parts; "": it has */
 };
 
 /**
  * forecast_make() - run @p; @ret is filled and has to be freed.
+ * @most_s: of the job's time; if it is not over by then, it gives up
  * @ends: it gives up when this becomes true; any thread may set it
  *
  * A job without end, or that the simulated machine cannot carry out, has no
  * parts, but a reason.
  *
- * Return: 0; -ENOMEM; -ECANCELED.
+ * Return: 0; -ENOMEM; -ECANCELED; -ETIME: by @most_s.
  */
 int forecast_make(struct forecast *ret, const struct machine_config *c,
-		  const struct interp_program *p, const atomic_bool *ends);
+		  const struct interp_program *p, double most_s,
+		  const atomic_bool *ends);
 void forecast_free(struct forecast *f);
 
 #endif /* VIRTUAL_FORECAST_H */

@@ -209,10 +209,11 @@ static void compare(const struct job *job, const struct sample *t, int n)
 	const double all_s = t[n - 1].job_s;
 
 	by_way = by_time = (struct score) { .n = 0 };
-	if (forecast_make(&f, &job->config, &job->program, &never) < 0 ||
+	if (forecast_make(&f, &job->config, &job->program, FORECAST_S_MAX,
+			  &never) < 0 ||
 	    f.why_not || eta_give(&eta, &f, 1) < 0 ||
 	    length_eta_measure(&way, &job->program) < 0)
-		fail("forecast", f.why_not ? f.why_not : "no memory");
+		fail("forecast", *f.why_not ? f.why_not : "no memory");
 	for (int i = 0; i < n; i++) {
 		struct eta_told told, news;
 

@@ -136,3 +136,54 @@ def test_what_cannot_be_forecast_says_why(slow):
                               if e.kind == "forecast" and e.job == "felt"])
     assert "cannot be told: " in told[0].text
     assert c.status_where(lambda s: s.queue_untold == 1).queue_s == 0
+
+
+# 10^5 s of machine time, in one dwell; and a cut that never gets on.
+LONG = b"G21 G90\nG4 P900000\nM30\n"
+
+
+def test_a_job_that_takes_long_keeps_no_other_from_its_forecast(slow):
+    c = slow.client
+    for job in ("machine", "waits"):
+        assert c.submit(LONG, job, hold=True).code == 0
+    c.status_where(lambda s: s.job == "machine", timeout=30)
+    for job in ("one", "two"):
+        assert c.submit(SINK, job, hold=True).code == 0
+
+    def rows():
+        return {j["job"]: j for j in json.loads(c.ask("queue").body)}
+    told = rig.until(lambda: all((rows()[k].get("forecast_s") or -1) > 0
+                                 for k in ("one", "two")) and rows(), 90, 0.2)
+    # The others are not given up, only put off.
+    assert (told["waits"].get("forecast_s") or -2) == -2
+    assert told["waits"]["forecast_why"] == ""
+    assert slow.ctl("queue").returncode == 0
+    # One that comes while a long one is looked at goes in front of it, too.
+    assert c.submit(SINK, "three", hold=True).code == 0
+    rig.until(lambda: (rows()["three"].get("forecast_s") or -1) > 0, 90, 0.2)
+
+
+def test_a_job_that_does_not_get_on_is_told_where(tmp_path):
+    text = (ROOT / "examples/machine.ini").read_text()
+    with rig.Machine(tmp_path) as m:
+        for key, value in (("name", m.name), ("removal_mm3_min", "0.001"),
+                           ("area_mm2", "1000000"),
+                           ("perimeter_mm", "0")):
+            text = re.sub(rf"(?m)^{key} *=[^;\n]*", f"{key} = {value} ", text)
+        m.config.write_text(text)
+        m.start_edmd()
+        m.start_jobs("--store", str(m.store))
+        m.client.status_where(lambda s: s.daemon == "ok")
+        cut = SINK.replace(b"C110\n", b"")
+        assert m.client.submit(b"G0 X1\nM30\n", "short", hold=True).code == 0
+        m.client.status_where(lambda s: s.job == "short", timeout=30)
+        assert m.client.submit(cut, "stuck", hold=True).code == 0
+
+        def row():
+            return {j["job"]: j for j in json.loads(
+                m.client.ask("queue").body)}["stuck"]
+        rig.until(lambda: row().get("forecast_s") == -1, 90, 0.2)
+        assert "does not get on behind" in row()["forecast_why"]
+        assert "line 6" in row()["forecast_why"]
+        out = m.ctl("queue").stdout
+        assert "no forecast: it does not get on behind" in out, out

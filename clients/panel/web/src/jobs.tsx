@@ -19,7 +19,7 @@ import { faultWords, jobWord, t } from "./words";
 
 interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
 interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string; line: string }
-interface Job { electrodes?: Used[]; n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; forecast_s?: number | null; jumps: number; retracts: number; shorts: number; erode_s?: number | null; arcs?: number | null; energy_j?: number | null; conditions?: Came[]; faults?: Fault[]; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
+interface Job { electrodes?: Used[]; n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; forecast_s?: number | null; forecast_why?: string; jumps: number; retracts: number; shorts: number; erode_s?: number | null; arcs?: number | null; energy_j?: number | null; conditions?: Came[]; faults?: Fault[]; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
 
 const EDITOR_MAX = 2 << 20, FILE_MAX = 64 << 20;
 
@@ -208,7 +208,7 @@ function ResumeSheet(p: { job: Job; onClose: () => void }): JSX.Element {
 /* As a time, or why there is none yet. */
 function takes(j: Job): string {
 	const s = j.forecast_s;
-	return j.state === "running" ? "" : typeof s !== "number" ? "\u2026" : s < 0 ? "?" : duration(s);
+	return j.state === "running" ? "" : typeof s !== "number" ? "\u2026" : s < -1 ? "\u2026" : s < 0 ? t("jobs.noforecast", { why: j.forecast_why ?? "" }) : duration(s);
 }
 
 const WAYS = [

@@ -128,7 +128,7 @@ export const zh: Record<Word, string> = {
 	"setup.offsetnote": "各原点在机床上的位置。* 为对刀所得，其余来自机床文件。",
 	"setup.faster": "步长",
 	"setup.held": "按住", "setup.speed": "速度", "setup.held.about": "按住时移动；松开或断线即停。",
-	"work.system": "显示的工件坐标系", "work.machine": "机床", "work.inforce": "当前行所用的工件坐标系",
+	"work.system": "显示的工件坐标系", "work.machine": "机床", "jobs.noforecast": "无预计：{why}", "work.inforce": "当前行所用的工件坐标系",
 	"off.turn": "转角", "off.tiltx": "沿 X 升高", "off.tilty": "沿 Y 升高",
 	"el.x": "X 偏移（C 在 0）", "el.y": "Y 偏移（C 在 0）", "el.c": "C 偏移",
 	"off.edit": "工件偏置 {work}", "off.means": "数值的含义", "off.now": "当前原点",
