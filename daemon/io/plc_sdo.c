@@ -81,14 +81,42 @@ static const struct plc_signal *signal_at(uint16_t index, uint8_t sub)
 	return NULL;
 }
 
-static const struct plc_constant *constant_at(uint16_t index, uint8_t sub)
+/* What a frame carries: how many signals, and then each of them. */
+static bool mapping_at(uint16_t index, uint8_t sub, struct plc_constant *ret)
+{
+	const bool asked = index >> 8 == 0x16;
+	uint32_t n = 0;
+
+	*ret = (struct plc_constant) {
+		.index = index, .sub = sub, .type = sub ? PLC_U32 : PLC_U8,
+	};
+	if (!asked && index >> 8 != 0x1a)
+		return false;
+	for (size_t i = 0; i < plc_nsignals; i++) {
+		const struct plc_signal *s = &plc_signal[i];
+
+		if (s->asked != asked || s->pdo != (index & 0xff) + 1 ||
+		    ++n != sub)
+			continue;
+		ret->value = (uint32_t)s->index << 16 |
+			     (uint32_t)s->sub << 8 |
+			     (uint32_t)(8 * plc_bytes(s->type));
+		return true;
+	}
+	ret->value = n;
+	return sub == 0 && n > 0;
+}
+
+static bool constant_at(uint16_t index, uint8_t sub, struct plc_constant *ret)
 {
 	for (size_t i = 0; i < plc_nconstants; i++) {
-		if (plc_constant[i].index == index &&
-		    plc_constant[i].sub == sub)
-			return &plc_constant[i];
+		if (plc_constant[i].index != index ||
+		    plc_constant[i].sub != sub)
+			continue;
+		*ret = plc_constant[i];
+		return true;
 	}
-	return NULL;
+	return mapping_at(index, sub, ret);
 }
 
 static uint32_t constant_value(const struct plc *p,
@@ -121,27 +149,30 @@ static void say_abort(struct plc *p, uint32_t code)
 /* Sub-index 0 is there wherever the object is. */
 static void say_missing(struct plc *p, uint16_t index)
 {
-	say_abort(p, constant_at(index, 0) ? ABORT_NO_SUB : ABORT_NO_OBJECT);
+	struct plc_constant c;
+
+	say_abort(p, constant_at(index, 0, &c) ? ABORT_NO_SUB :
+						 ABORT_NO_OBJECT);
 }
 
 static void upload(struct plc *p, uint16_t index, uint8_t sub)
 {
 	const struct plc_signal *s = signal_at(index, sub);
-	const struct plc_constant *c = constant_at(index, sub);
+	struct plc_constant c = { 0 };
 	size_t bytes;
 
-	if (!s && !c) {
+	if (!s && !constant_at(index, sub, &c)) {
 		say_missing(p, index);
 		return;
 	}
-	if (c && c->live == PLC_ERROR && c->sub > p->nhistory) {
+	if (c.live == PLC_ERROR && c.sub > p->nhistory) {
 		say_abort(p, ABORT_NO_DATA);
 		return;
 	}
-	bytes = plc_bytes(s ? s->type : c->type);
+	bytes = plc_bytes(s ? s->type : c.type);
 	p->answer.data[0] = (uint8_t)(0x43 | (4 - bytes) << 2);
 	can_put(p->answer.data + 4, s ? plc_value(p, s) :
-		constant_value(p, c), 4);
+		constant_value(p, &c), 4);
 }
 
 /* CiA 301: 0 alone may be written, also while there are errors. */
@@ -214,14 +245,14 @@ static void download(struct plc *p, const struct can_msg *m, uint16_t index,
 		     uint8_t sub)
 {
 	const struct plc_signal *s = signal_at(index, sub);
-	const struct plc_constant *c = constant_at(index, sub);
+	struct plc_constant c = { 0 };
 	enum plc_type type;
 
-	if (!s && !c) {
+	if (!s && !constant_at(index, sub, &c)) {
 		say_missing(p, index);
 		return;
 	}
-	type = s ? s->type : c->type;
+	type = s ? s->type : c.type;
 	if (s && !s->asked)
 		say_abort(p, ABORT_READ_ONLY);
 	else if (!has_length(m, type))
@@ -230,8 +261,8 @@ static void download(struct plc *p, const struct can_msg *m, uint16_t index,
 		download_signal(p, s, can_get(m->data + 4,
 					      (int)plc_bytes(type)));
 	else
-		download_constant(p, c, can_get(m->data + 4,
-						(int)plc_bytes(type)));
+		download_constant(p, &c, can_get(m->data + 4,
+						 (int)plc_bytes(type)));
 }
 
 void plc_sdo(struct plc *p, const struct can_msg *m)

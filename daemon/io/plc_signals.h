@@ -150,8 +150,9 @@ F(0x400, ASK,  3, "PlcPulse")
  *
  * The other objects that CiA 301 has.  @live says what becomes of @value:
  * FIXED, nothing; PLUS_NODE, the node is added; the others are read from
- * struct plc.  The PLC may write EMCY, BEAT and, with 0, ERRORS.  What stands
- * before a comma in the name of sub-index 0 is the name of the whole object.
+ * struct plc.  The PLC may write EMCY, BEAT and, with 0, ERRORS.  What a frame
+ * carries (1600 ..., 1A00 ...) follows from the signals.  What stands before a
+ * comma in the name of sub-index 0 is the name of the whole object.
  */
 #define PLC_OBJECT_ROWS(O) \
 O(0x1000, 0, U32, 0, FIXED, "Device type") \
@@ -174,57 +175,14 @@ O(0x1018, 1, U32, 0, FIXED, "Vendor") \
 O(0x1018, 2, U32, 0x65646d64, FIXED, "Product code") \
 O(0x1018, 3, U32, 1, FIXED, "Revision number") \
 PLC_RPDO(O, 1, 0x1400, 0x200) \
-O(0x1600, 0, U8, 6, FIXED, "RPDO1 mapping, objects") \
-PLC_MAPPED(O, RPDO1, 0x1600, 1, 0x2100, 1, 8) \
-PLC_MAPPED(O, RPDO1, 0x1600, 2, 0x2100, 2, 8) \
-PLC_MAPPED(O, RPDO1, 0x1600, 3, 0x2100, 3, 16) \
-PLC_MAPPED(O, RPDO1, 0x1600, 4, 0x2100, 4, 16) \
-PLC_MAPPED(O, RPDO1, 0x1600, 5, 0x2100, 5, 8) \
-PLC_MAPPED(O, RPDO1, 0x1600, 6, 0x2100, 6, 8) \
 PLC_RPDO(O, 2, 0x1401, 0x300) \
 PLC_RPDO(O, 3, 0x1402, 0x400) \
-O(0x1601, 0, U8, 3, FIXED, "RPDO2 mapping, objects") \
-PLC_MAPPED(O, RPDO2, 0x1601, 1, 0x2101, 1, 16) \
-PLC_MAPPED(O, RPDO2, 0x1601, 2, 0x2101, 2, 16) \
-PLC_MAPPED(O, RPDO2, 0x1601, 3, 0x2101, 3, 8) \
-O(0x1602, 0, U8, 4, FIXED, "RPDO3 mapping, objects") \
-PLC_MAPPED(O, RPDO3, 0x1602, 1, 0x2101, 4, 16) \
-PLC_MAPPED(O, RPDO3, 0x1602, 2, 0x2101, 5, 16) \
-PLC_MAPPED(O, RPDO3, 0x1602, 3, 0x2101, 6, 16) \
-PLC_MAPPED(O, RPDO3, 0x1602, 4, 0x2101, 7, 16) \
 PLC_TPDO(O, 1, 0x1800, 0x180) \
 PLC_TPDO(O, 2, 0x1801, 0x280) \
 PLC_TPDO(O, 3, 0x1802, 0x380) \
 PLC_TPDO(O, 4, 0x1803, 0x480) \
 PLC_TPDO(O, 5, 0x1804, 0x500) \
 PLC_TPDO(O, 6, 0x1805, 0x680) \
-O(0x1a00, 0, U8, 6, FIXED, "TPDO1 mapping, objects") \
-PLC_MAPPED(O, TPDO1, 0x1a00, 1, 0x2000, 1, 8) \
-PLC_MAPPED(O, TPDO1, 0x1a00, 2, 0x2000, 2, 8) \
-PLC_MAPPED(O, TPDO1, 0x1a00, 3, 0x2000, 3, 8) \
-PLC_MAPPED(O, TPDO1, 0x1a00, 4, 0x2000, 4, 8) \
-PLC_MAPPED(O, TPDO1, 0x1a00, 5, 0x2000, 5, 16) \
-PLC_MAPPED(O, TPDO1, 0x1a00, 6, 0x2000, 6, 16) \
-O(0x1a01, 0, U8, 2, FIXED, "TPDO2 mapping, objects") \
-PLC_MAPPED(O, TPDO2, 0x1a01, 1, 0x2000, 7, 32) \
-PLC_MAPPED(O, TPDO2, 0x1a01, 2, 0x2000, 8, 32) \
-O(0x1a02, 0, U8, 2, FIXED, "TPDO3 mapping, objects") \
-PLC_MAPPED(O, TPDO3, 0x1a02, 1, 0x2001, 1, 32) \
-PLC_MAPPED(O, TPDO3, 0x1a02, 2, 0x2001, 2, 32) \
-O(0x1a03, 0, U8, 2, FIXED, "TPDO4 mapping, objects") \
-PLC_MAPPED(O, TPDO4, 0x1a03, 1, 0x2001, 3, 32) \
-PLC_MAPPED(O, TPDO4, 0x1a03, 2, 0x2001, 6, 32) \
-O(0x1a04, 0, U8, 5, FIXED, "TPDO5 mapping, objects") \
-PLC_MAPPED(O, TPDO5, 0x1a04, 1, 0x2000, 11, 16) \
-PLC_MAPPED(O, TPDO5, 0x1a04, 2, 0x2000, 12, 16) \
-PLC_MAPPED(O, TPDO5, 0x1a04, 3, 0x2000, 13, 8) \
-PLC_MAPPED(O, TPDO5, 0x1a04, 4, 0x2000, 14, 16) \
-PLC_MAPPED(O, TPDO5, 0x1a04, 5, 0x2000, 15, 8) \
-O(0x1a05, 0, U8, 4, FIXED, "TPDO6 mapping, objects") \
-PLC_MAPPED(O, TPDO6, 0x1a05, 1, 0x2002, 1, 16) \
-PLC_MAPPED(O, TPDO6, 0x1a05, 2, 0x2002, 2, 16) \
-PLC_MAPPED(O, TPDO6, 0x1a05, 3, 0x2002, 3, 16) \
-PLC_MAPPED(O, TPDO6, 0x1a05, 4, 0x2002, 4, 16) \
 O(0x2000, 0, U8, 15, FIXED, "Machine, highest sub-index") \
 O(0x2001, 0, U8, 8, FIXED, "Positions, highest sub-index") \
 O(0x2002, 0, U8, 4, FIXED, "Pulse, highest sub-index") \
@@ -234,7 +192,7 @@ O(0x2101, 0, U8, 7, FIXED, "Generator, highest sub-index")
 #define PLC_ERROR_AT(O, i) \
 O(0x1003, i, U32, 0, ERROR, "Error " #i)
 
-/* How a frame is sent (bit 30: not on request), and what stands in it. */
+/* How a frame is sent (bit 30: not on request). */
 #define PLC_TPDO(O, n, at, id) \
 O(at, 0, U8, 2, FIXED, "TPDO" #n ", highest sub-index") \
 O(at, 1, U32, 0x40000000 + id, PLUS_NODE, "TPDO" #n " COB-ID") \
@@ -243,9 +201,6 @@ O(at, 2, U8, 254, FIXED, "TPDO" #n " transmission type")
 O(at, 0, U8, 2, FIXED, "RPDO" #n ", highest sub-index") \
 O(at, 1, U32, id, PLUS_NODE, "RPDO" #n " COB-ID") \
 O(at, 2, U8, 255, FIXED, "RPDO" #n " transmission type")
-#define PLC_MAPPED(O, frame, at, i, index, sub, bits) \
-O(at, i, U32, index * 0x10000 + sub * 0x100 + bits, FIXED, \
-  #frame " object " #i)
 
 /* clang-format on */
 

@@ -768,35 +768,47 @@ static bool overlap(const struct plc_signal *a, const struct plc_signal *b)
 	       b->byte < a->byte + plc_bytes(a->type);
 }
 
-/* The mapping objects say where the table puts each signal. */
+/* Where the mapping objects of its frame have it, in bits; -1: nowhere. */
+static int mapped_at(struct plc *p, const struct plc_signal *s)
+{
+	const uint16_t index = (uint16_t)((s->asked ? 0x1600 : 0x1a00) +
+					  s->pdo - 1);
+	const uint32_t map = (uint32_t)s->index << 16 | (uint32_t)s->sub << 8 |
+			     8 * (uint32_t)plc_bytes(s->type);
+	uint8_t first;
+	const uint32_t n = ask(p, 0x40, OBJECT(index, 0), 0, &first);
+	int at = 0;
+
+	for (uint32_t k = 1; k <= n; k++) {
+		const uint32_t x = ask(p, 0x40, OBJECT(index, k), 0, &first);
+
+		if (x == map)
+			return at;
+		at += (int)(x & 0xff);
+	}
+	return -1;
+}
+
+/* As a PLC reads them. */
 static void the_mapping_is_that_of_the_table(void **state)
 {
+	struct plc p = working();
+	uint8_t first;
+
 	(void)state;
 	for (size_t i = 0; i < plc_nsignals; i++) {
 		const struct plc_signal *s = &plc_signal[i];
-		const uint32_t bits = 8 * (uint32_t)plc_bytes(s->type);
-		const uint32_t map = (uint32_t)s->index << 16 |
-				     (uint32_t)s->sub << 8 | bits;
-		uint32_t at = 0;
-		bool mapped = s->pdo == 0;
 
-		for (size_t k = 0; k < plc_nconstants; k++) {
-			const struct plc_constant *c = &plc_constant[k];
-			const uint16_t index = (uint16_t)((s->asked ? 0x1600 :
-						0x1a00) + s->pdo - 1);
-
-			if (c->index != index || c->sub == 0)
-				continue;
-			if (c->value == map) {
-				assert_int_equal(at, 8u * s->byte);
-				mapped = true;
-			}
-			at += c->value & 0xff;
-		}
-		assert_true(mapped);
+		if (s->pdo)
+			assert_int_equal(mapped_at(&p, s), 8 * s->byte);
 		for (size_t k = 0; k < i; k++)
 			assert_false(overlap(s, &plc_signal[k]));
 	}
+	assert_int_equal(p.refused, 0);
+	/* No frame, and no signal of one. */
+	ask(&p, 0x40, OBJECT(0x1603, 0), 0, &first);
+	ask(&p, 0x40, OBJECT(0x1a00, 7), 0, &first);
+	assert_int_equal(p.refused, 2);
 }
 
 int main(void)
