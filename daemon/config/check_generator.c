@@ -5,10 +5,13 @@
 #include "keys.h"
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 #define WANTED_LINES	"lines, as lines 20 21 26 weights 3 6 12, or as lines " \
 			"5 6 codes 2 4 8 16; one line for what is on or off"
+#define WANTED_DAC	"dac DEVICE voltageN scale S to V, as dac iio:device0 " \
+			"voltage0 scale 2 to 10"
 #define WANTED_CAN	"can ID byte N, as can 1009 byte 2 bits 16 scale 0.1; " \
 			"or bit N, of the byte"
 #define WANTED_PLC	"or plc, the PLC's own signal of that"
@@ -23,12 +26,17 @@ struct check {
 };
 
 /* Found and wanted are filled; the line is that of @key. */
-static int refuse(struct check *q, const char *key)
+static int refuse_at(struct check *q, enum config_section_id s,
+		     const char *key)
 {
-	q->diag->line = q->lines->at[config_key_find(SECTION_GENERATOR, key)]
-				    [0];
+	q->diag->line = q->lines->at[config_key_find(s, key)][0];
 	q->diag->column = 0;
 	return -EINVAL;
+}
+
+static int refuse(struct check *q, const char *key)
+{
+	return refuse_at(q, SECTION_GENERATOR, key);
 }
 
 static const char *key_name(int field, bool told, char *buf, size_t size)
@@ -56,6 +64,8 @@ static const char *misfit(const struct check *q, int field, bool told,
 		return "is by the PLC, and the interface is not plc";
 	if (told && w->kind == WAY_LINES)
 		return "is told by lines, which are outputs";
+	if (told && w->kind == WAY_DAC)
+		return "is told by a converter's output";
 	if (!told && w->input)
 		return "is an input register, which nobody can write";
 	if (w->kind == WAY_REGISTER &&
@@ -85,7 +95,9 @@ static int check_way(struct check *q, int field, bool told)
 	if (!wrong)
 		return 0;
 	interp_diag_say(q->diag, "generator.%s \"%.60s\" %s; none, %s; %s",
-			key, text, wrong, WANTED_LINES,
+			key, text, wrong,
+			strncmp(text, "dac", 3) == 0 ? WANTED_DAC :
+						       WANTED_LINES,
 			interface == GENERATOR_MODBUS ? WANTED_REGISTER :
 			interface == GENERATOR_PLC ? WANTED_PLC : WANTED_CAN);
 	return refuse(q, key);
@@ -155,6 +167,25 @@ static int check_lines(struct check *q, int field)
 		for (int i = 0; i <= field; i++)
 			if (check_same_line(q, field, k, &w, i))
 				return -EINVAL;
+	}
+	return 0;
+}
+
+static int check_dac(struct check *q, int field)
+{
+	struct config_way w, x;
+
+	config_way(q->c, field, false, &w);
+	for (int i = 0; w.kind == WAY_DAC && i < field; i++) {
+		config_way(q->c, i, false, &x);
+		if (x.kind != WAY_DAC || x.id != w.id ||
+		    x.current != w.current || strcmp(x.device, w.device) != 0)
+			continue;
+		interp_diag_say(q->diag, "generator.%s and generator.%s are "
+				"both %s %s%u; a channel of its own for each",
+				process_name(field), process_name(i), w.device,
+				w.current ? "current" : "voltage", w.id);
+		return refuse(q, process_name(field));
 	}
 	return 0;
 }
@@ -374,6 +405,83 @@ static int check_by_plc(struct check *q)
 	return check_slow(q, WAY_PLC, "plc");
 }
 
+/* -- Counts for the gap servo ---------------------------------------------- */
+
+/* Between two tellings of a sum, at a pulse each microsecond. */
+#define PULSES_A_MS	1000
+
+/* Arcs may be left out: then they are in one of the others. */
+static int check_sum(struct check *q, int field)
+{
+	const double most = PULSES_A_MS * q->c->gap.share_stale_ms;
+	struct config_way w;
+	char key[24];
+
+	config_way(q->c, field, true, &w);
+	key_name(field, true, key, sizeof(key));
+	if (w.kind == WAY_NONE && field == PROCESS_ARCS)
+		return 0;
+	if (w.kind == WAY_NONE) {
+		interp_diag_say(q->diag, "gap.source is counts and generator."
+				"%s is none; told_opens, told_sparks and "
+				"told_shorts of a generator on can or modbus",
+				key);
+		return refuse_at(q, SECTION_GAP, "source");
+	}
+	if (exp2(w.bits - 1) * w.scale >= most)
+		return 0;
+	interp_diag_say(q->diag, "generator.%s has bits %u: in "
+			"gap.share_stale_ms %g it may begin anew unseen; bits "
+			"%d at least, or a shorter share_stale_ms", key,
+			w.bits, q->c->gap.share_stale_ms,
+			w.kind == WAY_REGISTER ? 32 :
+			(int)ceil(log2(most / w.scale)) + 1);
+	return refuse(q, key);
+}
+
+/* The second telling with sparks is the first reading, and one answer may be
+ * lost. */
+static int check_stale(struct check *q)
+{
+	const struct config_generator *g = &q->c->generator;
+	const bool modbus = config_generator_interface(q->c) ==
+			    GENERATOR_MODBUS;
+	const double least = modbus ? 2 * g->every_ms + g->timeout_ms :
+			     4e-6 * (double)config_period_ns(q->c);
+
+	if (q->c->gap.share_stale_ms >= least)
+		return 0;
+	interp_diag_say(q->diag, "gap.share_stale_ms %g is less than %s; at "
+			"least %g", q->c->gap.share_stale_ms, modbus ?
+			"two generator.modbus_every_ms and a modbus_timeout_ms"
+			: "four periods", least);
+	return refuse_at(q, SECTION_GAP, "share_stale_ms");
+}
+
+/* Without sparks there is nothing to count, and a gap to be felt. */
+static bool has_voltage(const struct machine_config *c)
+{
+	return c->backend == BACKEND_CAN402 ? c->can402.gap_id > 0 :
+	       c->backend == BACKEND_GPIO && strcmp(c->gpio.adc, "none") != 0;
+}
+
+static int check_counts(struct check *q)
+{
+	if (q->c->gap.source != GAP_COUNTS)
+		return 0;
+	if (!has_voltage(q->c)) {
+		interp_diag_say(q->diag, "gap.source is counts and nothing "
+				"feels the gap without sparks; gpio.adc with "
+				"backend gpio, can402.gap_id with can402; with "
+				"backend sim source = shares");
+		return refuse_at(q, SECTION_GAP, "source");
+	}
+	for (int i = PROCESS_OPENS; i <= PROCESS_SHORTS; i++)
+		if (check_sum(q, i))
+			return -EINVAL;
+	return check_stale(q);
+}
+
 static int check_interface(struct check *q)
 {
 	const bool model = config_machine_is(q->c, MACHINE_MODEL);
@@ -404,12 +512,13 @@ int config_check_generator(const struct machine_config *c,
 	for (int i = 0; i < PROCESS_NTOLD; i++) {
 		const bool asked = i < PROCESS_NFIELDS;
 
-		if ((asked && (check_lines(&q, i) || check_bits(&q, i, false) ||
+		if ((asked && (check_lines(&q, i) || check_dac(&q, i) ||
+			       check_bits(&q, i, false) ||
 			       check_ids(&q, i, false))) ||
 		    check_bits(&q, i, true) || check_ids(&q, i, true))
 			return -EINVAL;
 	}
-	return check_modbus(&q) || check_by_plc(&q) ||
+	return check_modbus(&q) || check_by_plc(&q) || check_counts(&q) ||
 	       check_guard(&q, LINE_WATCHDOG, c->gpio.watchdog_by,
 			   "watchdog") ||
 	       check_guard(&q, LINE_ESTOP, c->gpio.estop_by, "estop") ?

@@ -128,11 +128,13 @@ static void asking_of(const struct machine_config *m, struct cycle_config *c)
 	a->settle_cycles = cycles_of(g->settle_ms * 1e-3, c->period_ns);
 	a->polarity_cycles = cycles_of(g->polarity_ms * 1e-3, c->period_ns);
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
-		struct config_way told;
+		struct config_way asked, told;
 
 		config_delivers(m, i, &a->field[i]);
+		config_way(m, i, false, &asked);
 		config_way(m, i, true, &told);
-		a->answers = a->answers || told.kind != WAY_NONE;
+		a->answers = a->answers || told.kind != WAY_NONE ||
+			     asked.kind == WAY_DAC;
 	}
 }
 

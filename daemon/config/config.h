@@ -424,7 +424,11 @@ enum config_way_kind {
 	WAY_LINES,
 	WAY_REGISTER,			/* of a Modbus slave */
 	WAY_PLC,			/* signals of the PLC */
+	WAY_DAC,			/* a converter of industrial I/O */
 };
+
+#define CONFIG_DEVICE_MAX	40	/* of a converter's name */
+
 
 /* How one field reaches the generator, or is told by it. */
 struct config_way {
@@ -437,12 +441,18 @@ struct config_way {
 	bool low_first;			/* of the two of a count of 32 bits */
 	uint8_t bit, bits;		/* first bit of 64, or 16; and how
 					 * many */
-	double scale;			/* of one count; 0: it is a code */
+	double scale;			/* of one count; 0: it is a code.  A
+					 * converter: of one V or mA */
 	/* Lines: the first is the lowest bit.  These and a register may have
 	 * codes: `code` i is the value of the code i. */
 	uint8_t nlines, ncodes;
 	struct config_line_at line[CONFIG_WAY_LINES];
 	double code[PROCESS_VALUES_MAX];
+	/* A converter: out_voltage@id or out_current@id of @device. */
+	char device[CONFIG_DEVICE_MAX];
+	bool current;
+	double zero, most;		/* V or mA: of the value 0, and the
+					 * highest one */
 };
 
 /**

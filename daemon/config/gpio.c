@@ -168,13 +168,15 @@ static int check_source(struct check *q)
 				       "would read each gap as a short; the "
 				       "divider in front of the converter");
 	}
-	if (q->c->gap.source == (lines ? GAP_LINES : GAP_VOLTAGE))
+	if (q->c->gap.source == (lines ? GAP_LINES : GAP_VOLTAGE) ||
+	    q->c->gap.source == GAP_COUNTS)
 		return 0;
 	blame(q, k, 0);
 	if (!lines)
 		return interp_diag_say(q->diag,
 				       "gap.source is %s and the gap is read "
-				       "by gpio.adc; [gap] source = voltage",
+				       "by gpio.adc; [gap] source = voltage, "
+				       "or counts of the generator",
 				       k->word((int)q->c->gap.source));
 	return interp_diag_say(q->diag, "gap.source is %s and there are gap "
 			       "lines; [gap] source = lines; or no gap_open, "

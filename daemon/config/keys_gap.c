@@ -24,6 +24,7 @@ static const char *source_word(int i)
 		[GAP_SHARES] = "shares",
 		[GAP_LINES] = "lines",
 		[GAP_CAN] = "can",
+		[GAP_COUNTS] = "counts",
 	};
 
 	return WORD_OF(words, i);
@@ -82,7 +83,9 @@ static const char *probe_word(int i)
 /* clang-format off */
 static const struct config_key row[] = {
 	WORDS(GAP, "source", "sim", AT(gap.source), source_word,
-	      "where the gap signal comes from"),
+	      "where the gap signal comes from; counts: the pulses that "
+	      "[generator] told_opens, told_sparks, told_shorts and told_arcs "
+	      "count, as shares"),
 	OF_WIRE(GAP, "servo_v", "V", "25", "15", 0.1, 500, AT(gap.servo_v),
 		"mean gap voltage that the servo holds"),
 	NUMBER(GAP, "short_v", "V", "8", 0, 500, AT(gap.short_v),
@@ -139,6 +142,16 @@ static const struct config_key row[] = {
 	NUMBER(GAP, "share_open", "", "0.95", 0.01, 1, AT(gap.share_open),
 	       "with source shares: this share of open pulses means that "
 	       "there is nothing to cut yet"),
+	NUMBER(GAP, "share_pulses", "", "10", 1, 1e6, AT(gap.share_pulses),
+	       "with source counts: a reading is of so many pulses, or of "
+	       "those of half of share_stale_ms"),
+	NUMBER(GAP, "share_mm", "mm", "0.002", 1e-5, 10, AT(gap.share_mm),
+	       "with source counts: after so much feed the servo stands until "
+	       "the next reading"),
+	NUMBER(GAP, "share_stale_ms", "ms", "50", 1, 10000,
+	       AT(gap.share_stale_ms),
+	       "with source counts: without a reading for so long the gap is "
+	       "lost"),
 	NUMBER(GAP, "retract_mm_s", "mm/s", "5", 1e-3, 1000,
 	       AT(gap.retract_mm_s), "speed back along the path in a retract"),
 	NUMBER(GAP, "retract_limit_mm", "mm", "3", 1e-3, 1000,

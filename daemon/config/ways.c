@@ -19,11 +19,13 @@ const char *config_way_word(enum config_way_kind kind)
 	static const char *const words[] = {
 		[WAY_NONE] = "none", [WAY_OWN] = "own", [WAY_CAN] = "can",
 		[WAY_LINES] = "lines", [WAY_REGISTER] = "register",
-		[WAY_PLC] = "plc",
+		[WAY_PLC] = "plc", [WAY_DAC] = "dac",
 	};
 
 	return words[kind];
 }
+
+_Static_assert(CONFIG_DEVICE_MAX == CONFIG_WAY_WORD, "a device is a word");
 
 struct words {
 	const char *at;
@@ -355,6 +357,60 @@ static const char *read_plc(struct words *w, int field, struct config_way *ret)
 	return give_place(ret, field);
 }
 
+static bool is_channel(const char *word, struct config_way *ret)
+{
+	const bool voltage = strncmp(word, "voltage", 7) == 0;
+	const char *at = word + 7;
+	double id;
+
+	ret->current = !voltage;
+	if ((!voltage && strncmp(word, "current", 7) != 0) ||
+	    strspn(at, "0123456789") != strlen(at) || !number(at, &id) ||
+	    !is_whole(id, 0, 65535))
+		return false;
+	ret->id = (uint16_t)id;
+	return true;
+}
+
+static double *dac_key(const char *key, struct config_way *w)
+{
+	return strcmp(key, "scale") == 0 ? &w->scale :
+	       strcmp(key, "zero") == 0 ? &w->zero :
+	       strcmp(key, "to") == 0 ? &w->most : NULL;
+}
+
+/* Its steps are the device's; it is asked for them when it is opened. */
+static const char *read_dac(struct words *w, int field, struct config_way *ret)
+{
+	double *at;
+
+	*ret = (struct config_way) {
+		.kind = WAY_DAC, .gives.there = true, .scale = 1,
+		.most = (double)NAN,
+	};
+	if (is_switch(field))
+		return "is of a field that is on or off";
+	if (!next(w))
+		return "has no device";
+	memcpy(ret->device, w->word, sizeof(ret->device));
+	if (!next(w) || !is_channel(w->word, ret))
+		return "has no channel voltageN or currentN";
+	while (next(w)) {
+		at = dac_key(w->word, ret);
+		if (!at || !next(w) || !number(w->word, at))
+			return "has a word that is none of scale, zero, to "
+			       "with a number";
+	}
+	if (!(ret->scale > 0) || !(ret->most > ret->zero))
+		return "has no scale above 0, or no highest output: to N, "
+		       "above zero";
+	ret->gives.min = range_min(field);
+	ret->gives.max = fmin((ret->most - ret->zero) * ret->scale,
+			      range_max(field));
+	return ret->gives.max > ret->gives.min ? NULL :
+	       "cannot hold a value of the field";
+}
+
 const char *config_way_read(const char *text, int field,
 			    struct config_way *ret)
 {
@@ -372,7 +428,10 @@ const char *config_way_read(const char *text, int field,
 		return read_register(&w, field, ret);
 	if (strcmp(w.word, "plc") == 0)
 		return read_plc(&w, field, ret);
-	return "begins with no word of auto, none, lines, can, register, plc";
+	if (strcmp(w.word, "dac") == 0)
+		return read_dac(&w, field, ret);
+	return "begins with no word of auto, none, lines, can, register, plc, "
+	       "dac";
 }
 
 /* Numbers only: to look a name up takes as long as it likes. */

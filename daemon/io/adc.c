@@ -3,6 +3,7 @@
  * adc.c - read samples of the kernel's industrial I/O from its files
  */
 #include "adc.h"
+#include "iio.h"
 
 #include "interp/diag.h"
 
@@ -151,77 +152,11 @@ bool adc_note(struct adc *a, char *buf, size_t size)
 
 /* -- Its files ------------------------------------------------------------ */
 
-static bool line_of(const char *path, char *ret, size_t size)
-{
-	FILE *f = fopen(path, "re");
-	bool ok;
-
-	if (!f)
-		return false;
-	ok = fgets(ret, (int)size, f) != NULL;
-	fclose(f);
-	if (ok)
-		ret[strcspn(ret, "\n")] = '\0';
-	return ok;
-}
-
-static bool put(const char *path, const char *text)
-{
-	const int fd = open(path, O_WRONLY | O_CLOEXEC);
-	bool ok;
-
-	if (fd < 0)
-		return false;
-	ok = write(fd, text, strlen(text)) == (ssize_t)strlen(text);
-	return close(fd) == 0 && ok;
-}
-
-/* "iio:device0" itself, or the one that has this name. */
-static bool find(const struct adc_config *c, char *ret, size_t size)
-{
-	char path[160], name[64];
-	struct dirent *e;
-	bool found = false;
-	DIR *d = opendir(c->sysfs);
-
-	while (d && !found && (e = readdir(d))) {
-		if (strncmp(e->d_name, "iio:device", 10) != 0)
-			continue;
-		snprintf(path, sizeof(path), "%s/%.60s/name", c->sysfs,
-			 e->d_name);
-		found = strcmp(e->d_name, c->device) == 0 ||
-			(line_of(path, name, sizeof(name)) &&
-			 strcmp(name, c->device) == 0);
-		if (found)
-			snprintf(ret, size, "%.60s", e->d_name);
-	}
-	if (d)
-		closedir(d);
-	return found;
-}
-
 static int refuse(struct interp_diag *d, int err, const char *what,
 		  const char *wanted)
 {
 	interp_diag_say(d, "gpio.adc: %s: %s; %s", what, strerror(err), wanted);
 	return -err;
-}
-
-/* Of the channel, or of all voltages; NAN: it is no number. */
-static double number_of(const char *dir, uint32_t channel, const char *what,
-			double otherwise)
-{
-	char path[160], text[64], *end;
-	double x;
-
-	snprintf(path, sizeof(path), "%s/in_voltage%u_%s", dir, channel, what);
-	if (!line_of(path, text, sizeof(text))) {
-		snprintf(path, sizeof(path), "%s/in_voltage_%s", dir, what);
-		if (!line_of(path, text, sizeof(text)))
-			return otherwise;
-	}
-	x = strtod(text, &end);
-	return end == text ? NAN : x;
 }
 
 /* The highest count, or the lowest one where that is the highest voltage. */
@@ -238,9 +173,10 @@ static int64_t top_of(const struct adc *a)
 static int scale_of(struct adc *a, const struct adc_config *c, const char *dir,
 		    struct interp_diag *d)
 {
-	const double mv = number_of(dir, c->channel, "scale", 1);
+	const double mv = iio_number(dir, "in_voltage", c->channel, "scale",
+				     1);
 
-	a->offset = number_of(dir, c->channel, "offset", 0);
+	a->offset = iio_number(dir, "in_voltage", c->channel, "offset", 0);
 	a->scale_v = mv * 1e-3 * c->ratio;
 	a->top = top_of(a);
 	if (isfinite(a->scale_v) && a->scale_v != 0 && isfinite(a->offset))
@@ -283,7 +219,7 @@ static int each_enable(const char *dir, const char *own,
 static int enable_one(const char *path, bool own, struct interp_diag *d)
 {
 	(void)d;
-	put(path, own ? "1" : "0");
+	iio_put(path, own ? "1" : "0");
 	return 0;
 }
 
@@ -292,7 +228,7 @@ static int enabled_one(const char *path, bool own, struct interp_diag *d)
 {
 	char text[32];
 
-	if (line_of(path, text, sizeof(text)) &&
+	if (iio_line(path, text, sizeof(text)) &&
 	    (strtol(text, NULL, 10) != 0) == own)
 		return 0;
 	return refuse(d, EINVAL, path, own ? "a channel that can be enabled" :
@@ -317,7 +253,7 @@ static int format_of(struct adc *a, const char *dir, uint32_t channel,
 
 	snprintf(path, sizeof(path), "%s/scan_elements/in_voltage%u_type", dir,
 		 channel);
-	if (!line_of(path, text, sizeof(text)))
+	if (!iio_line(path, text, sizeof(text)))
 		return refuse(d, ENXIO, path, "a device with a buffer, and "
 			      "adc_channel one of its in_voltageN");
 	if (adc_format_read(text, &a->format))
@@ -336,11 +272,11 @@ static int length_of(struct adc *a, const char *dir, struct interp_diag *d)
 	unsigned long n;
 
 	snprintf(path, sizeof(path), "%s/buffer/watermark", dir);
-	put(path, "1");
+	iio_put(path, "1");
 	snprintf(path, sizeof(path), "%s/buffer/length", dir);
 	snprintf(text, sizeof(text), "%d", ADC_SAMPLES);
-	put(path, text);
-	if (!line_of(path, text, sizeof(text)))
+	iio_put(path, text);
+	if (!iio_line(path, text, sizeof(text)))
 		return refuse(d, errno, path, "a device with a buffer");
 	n = strtoul(text, NULL, 10);
 	if (n < 2 || n > ADC_SAMPLES) {
@@ -358,9 +294,9 @@ static int begin(struct adc *a, const struct adc_config *c, const char *dir,
 	char path[192];
 	int err;
 
-	put(a->enable, "0");
+	iio_put(a->enable, "0");
 	snprintf(path, sizeof(path), "%s/trigger/current_trigger", dir);
-	if (strcmp(c->trigger, "none") != 0 && !put(path, c->trigger))
+	if (strcmp(c->trigger, "none") != 0 && !iio_put(path, c->trigger))
 		return refuse(diag, errno, path, "the name of a trigger, as in "
 			      "/sys/bus/iio/devices/trigger*/name");
 	err = format_of(a, dir, c->channel, diag);
@@ -370,7 +306,7 @@ static int begin(struct adc *a, const struct adc_config *c, const char *dir,
 		err = scale_of(a, c, dir, diag);
 	if (err == 0)
 		err = length_of(a, dir, diag);
-	if (err == 0 && !put(a->enable, "1"))
+	if (err == 0 && !iio_put(a->enable, "1"))
 		return refuse(diag, errno, a->enable, "a device that is not in "
 			      "use, and its trigger");
 	return err;
@@ -381,14 +317,15 @@ int adc_open(struct adc *a, const struct adc_config *c,
 	     struct interp_diag *diag)
 {
 	char name[64], dir[128], path[128];
+	int err;
 
 	memset(a, 0, sizeof(*a));
 	a->fd = -1;
 	a->stale_periods = a->age = c->stale_periods;
 	snprintf(a->device, sizeof(a->device), "%.60s", c->device);
-	if (!find(c, name, sizeof(name)))
-		return refuse(diag, ENODEV, c->device, "iio:deviceN, or a name "
-			      "that cat /sys/bus/iio/devices/*/name lists");
+	err = iio_find(c->sysfs, c->device, name, sizeof(name));
+	if (err < 0)
+		return refuse(diag, -err, c->device, IIO_WANTED);
 	snprintf(dir, sizeof(dir), "%s/%s", c->sysfs, name);
 	snprintf(path, sizeof(path), "%s/%s", c->dev, name);
 	a->fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
@@ -405,7 +342,7 @@ int adc_open(struct adc *a, const struct adc_config *c,
 void adc_close(struct adc *a)
 {
 	if (a->enable[0])
-		put(a->enable, "0");
+		iio_put(a->enable, "0");
 	if (a->fd >= 0)
 		close(a->fd);
 	a->fd = -1;

@@ -11,6 +11,8 @@
 #include <unistd.h>
 
 #define REFRESH_S	2e-3
+#define ANALOGUE	0.01		/* of its range: an analogue value that
+					 * is told as it was asked */
 
 /* -- What the log says ----------------------------------------------------- */
 
@@ -73,6 +75,17 @@ static void put_text(const struct generator_note *n, const char *words,
 		snprintf(buf, size, "generator: its own fault %s",
 			 config_fault_text(words, n->code, own, sizeof(own)));
 		break;
+	case GENERATOR_UNCOUNTED:
+		snprintf(buf, size, n->field == PROCESS_FAULT ?
+			 "generator: it counts no pulses, for share_stale_ms" :
+			 "generator: it does not tell its %s, for "
+			 "share_stale_ms", name);
+		break;
+	case GENERATOR_DAC:
+		snprintf(buf, size, "generator: the converter of %s: asked %s: "
+			 "%s", name, value_text(n->asked, asked),
+			 strerror(n->code));
+		break;
 	case GENERATOR_LINES_LOST:
 		snprintf(buf, size, "generator: its lines do not answer");
 		break;
@@ -130,16 +143,23 @@ static bool answers(const struct generator *g, int field)
 	return tells(g, field) || is_taken(g, field);
 }
 
-static bool agrees(const struct generator *g, int field)
+/* Half a count; of what leaves by a converter, some of its range. */
+static double slack_of(const struct generator *g, int field)
 {
-	const struct config_way *w = &g->told[field];
-	const double slack = fmax(w->scale, g->way[field].scale) * 0.501;
+	const struct config_way *w = &g->way[field];
+	const double told = g->told[field].scale * 0.501;
 
-	return !tells(g, field) || isnan(g->value[field]) ||
-	       fabs(g->heard[field] - g->value[field]) <= slack;
+	return w->kind == WAY_DAC ? fmax(told, w->gives.max * ANALOGUE) :
+				    fmax(told, w->scale * 0.501);
 }
 
-static void trouble(struct generator *g, const struct generator_note *n)
+static bool agrees(const struct generator *g, int field)
+{
+	return !tells(g, field) || isnan(g->value[field]) ||
+	       fabs(g->heard[field] - g->value[field]) <= slack_of(g, field);
+}
+
+void generator_trouble(struct generator *g, const struct generator_note *n)
 {
 	struct generator_note full = *n;
 
@@ -158,12 +178,13 @@ static void trouble(struct generator *g, const struct generator_note *n)
 static void trouble_of(struct generator *g, enum generator_note_kind kind,
 		       int field)
 {
-	trouble(g, &(struct generator_note) { .kind = kind, .field = field });
+	generator_trouble(g, &(struct generator_note) {
+		.kind = kind, .field = field });
 }
 
 void generator_refused(struct generator *g, int field, int exception)
 {
-	trouble(g, &(struct generator_note) {
+	generator_trouble(g, &(struct generator_note) {
 		.kind = GENERATOR_REFUSES, .field = field, .code = exception });
 }
 
@@ -178,6 +199,9 @@ static int odd_one(const struct generator *g)
 			return i;
 	for (int i = 0; i < PROCESS_NFIELDS && waits; i++)
 		if (is_taken(g, i))
+			return i;
+	for (int i = 0; g->dac && i < INTERP_NGENERATOR; i++)
+		if (g->way[i].kind == WAY_DAC && generator_dac_waits(g))
 			return i;
 	return -1;
 }
@@ -228,7 +252,7 @@ static void look(struct generator *g)
 	const int odd = odd_one(g), lost = lost_one(g);
 
 	if (g->heard[PROCESS_FAULT] > 0)
-		trouble(g, &(struct generator_note) {
+		generator_trouble(g, &(struct generator_note) {
 			.kind = GENERATOR_FAULT, .field = PROCESS_FAULT,
 			.code = (int)g->heard[PROCESS_FAULT] });
 	if (lost >= 0)
@@ -271,9 +295,12 @@ static void generator_read(void *self, struct io_inputs *in)
 		g->modbus_read(g);
 	if (g->plc)
 		generator_plc_read(g);
+	if (g->dac)
+		generator_dac_read(g);
 	greet(g);
 	look(g);
 	hand_energy_on(g, in);
+	generator_counts_read(g, in);
 	memcpy(g->says.told, g->heard, sizeof(g->says.told));
 	in->generator = g->says;
 	/* Where the bus is the drives' too, it is their trouble. */
@@ -287,10 +314,11 @@ static void run_on(struct generator *g, int field, uint64_t count)
 	const uint64_t bits = (UINT64_C(1) << w->bits) - 1;
 	const uint64_t more = (count - g->count[field]) & bits;
 	const bool first = isnan(g->heard[field]);
-	const double add = first || more > bits / 2 ? 0 :
-			   (double)more * w->scale;
+	const bool reset = first || more > bits / 2;
+	const double add = reset ? 0 : (double)more * w->scale;
 
 	g->heard[field] = first ? 0 : g->heard[field] + add;
+	generator_counts_hear(g, field, reset);
 	if (field == PROCESS_ENERGY_J)
 		g->energy_j += add;
 }
@@ -376,6 +404,8 @@ static void generator_write(void *self, const struct io_outputs *out)
 		g->modbus_write(g);
 	if (g->plc)
 		generator_plc_write(g);
+	if (g->dac)
+		generator_dac_write(g);
 	g->axes.write(g->axes.self, out);
 }
 
@@ -407,6 +437,7 @@ static void generator_close(void *self)
 		generator_can_write(g);
 	if (g->modbus)
 		g->modbus_write(g);
+	generator_dac_close(g);
 	g->axes.close(g->axes.self);
 	/* The last: it may wait for an answer. */
 	if (g->modbus)
@@ -441,10 +472,12 @@ struct generator *generator_attach(struct io_machine *m,
 	g->refresh = periods(c, REFRESH_S);
 	g->silent = periods(c, c->generator.silent_ms * 1e-3);
 	g->confirm = periods(c, c->generator.confirm_s);
+	g->settle = periods(c, c->generator.settle_ms * 1e-3);
 	for (int i = 0; i < PROCESS_NFIELDS; i++) {
 		config_way(c, i, false, &g->way[i]);
 		g->value[i] = i < INTERP_NGENERATOR ? (double)NAN : 0;
 	}
+	generator_counts_init(g, c, periods(c, c->gap.share_stale_ms * 1e-3));
 	g->fault_words = c->generator.fault_words;
 	for (int i = 0; i < PROCESS_NTOLD; i++) {
 		config_way(c, i, true, &g->told[i]);

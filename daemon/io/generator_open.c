@@ -3,6 +3,7 @@
  * generator_open.c - the generator as the machine file wants it, or why not
  */
 #include "generator_own.h"
+#include "iio.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -68,9 +69,12 @@ int io_generator_open(struct io_machine *m, const struct machine_config *c,
 	g->plc = g->takes ? plc : NULL;
 	if (has(g, WAY_LINES))
 		err = generator_lines_open(g, c, diag);
+	if (err == 0 && has(g, WAY_DAC))
+		err = generator_dac_open(g, IIO_SYSFS, diag);
 	if (err == 0 && interface == GENERATOR_MODBUS)
 		err = generator_modbus_open(g, c, diag);
 	if (err < 0) {
+		generator_dac_close(g);
 		if (g->lines)
 			g->lines_close(g->lines);
 		generator_forget(g);

@@ -27,17 +27,35 @@ enum generator_note_kind {
 	GENERATOR_SILENT, GENERATOR_DIFFERS, GENERATOR_LATE,
 	GENERATOR_LINES_LOST, GENERATOR_BUS_DOWN, GENERATOR_BUS_BACK,
 	GENERATOR_REFUSES, GENERATOR_LINK_DOWN, GENERATOR_LINK_BACK,
-	GENERATOR_FAULT
+	GENERATOR_FAULT, GENERATOR_UNCOUNTED, GENERATOR_DAC
 };
 
 struct generator_note {
 	enum generator_note_kind kind;
 	int field;
 	double asked, told;
-	int code;			/* REFUSES: the exception; LINK:
+	int code;			/* REFUSES: the exception; LINK, DAC:
 					 * errno; FAULT: its number */
 };
 
+#define GENERATOR_NCOUNTS	(PROCESS_SHORTS - PROCESS_OPENS + 1)
+
+/* Readings of the gap from the sums of pulses, PROCESS_OPENS on. */
+struct generator_counts {
+	bool wanted;			/* [gap] source is counts */
+	double least;			/* pulses of a reading */
+	uint32_t stale, age;		/* periods since the last reading, or
+					 * since there are sparks */
+	uint32_t told;			/* a bit for each that was told since
+					 * they were looked at */
+	bool begun;			/* `from` is with sparks */
+	bool reset;			/* one began at 0 */
+	bool read;			/* `shares` is a reading */
+	double from[GENERATOR_NCOUNTS];
+	struct io_shares shares;
+};
+
+struct generator_dac;
 struct generator_lines;
 struct generator_modbus;
 
@@ -46,7 +64,7 @@ struct generator {
 	struct config_way way[PROCESS_NFIELDS], told[PROCESS_NTOLD];
 	double value[PROCESS_NFIELDS];	/* as asked last; NAN: its own */
 	uint32_t asked;			/* io_outputs.asked of these */
-	uint32_t refresh, silent, confirm;	/* periods */
+	uint32_t refresh, silent, confirm, settle;	/* periods */
 	struct io_generator says;
 	uint32_t waited;		/* periods for its word */
 	uint32_t up;			/* periods since it was opened */
@@ -64,10 +82,12 @@ struct generator {
 	uint64_t count[PROCESS_NTOLD];	/* ... as bits */
 	uint32_t age[PROCESS_NTOLD];	/* periods */
 	double energy_j;		/* told and not handed on yet */
+	struct generator_counts counts;
 	/* Lines; NULL: none. */
 	struct generator_lines *lines;
 	bool (*lines_write)(struct generator *g);
 	void (*lines_close)(struct generator_lines *l);
+	struct generator_dac *dac;	/* NULL: none */
 	/* Modbus; NULL: none. */
 	struct generator_modbus *modbus;
 	/* Modbus and a PLC say which version they have taken. */
@@ -111,11 +131,28 @@ double generator_value(const struct config_way *w, int field, uint64_t count);
 /** generator_hears() - it told these bits for field @field. */
 void generator_hears(struct generator *g, int field, uint64_t count);
 
+/** generator_trouble() - no sparks, until a reset or until something else is
+ *  asked, and the log says why. */
+void generator_trouble(struct generator *g, const struct generator_note *n);
+
 /** generator_refused() - it answered field @field with this exception. */
 void generator_refused(struct generator *g, int field, int exception);
 
 /** generator_tell() - what the log is to say next. */
 void generator_tell(struct generator *g, const struct generator_note *n);
+
+/* -- generator_counts.c ---------------------------------------------------- */
+
+/** generator_counts_init() - as [gap] source wants it; a reading of @stale
+ *  periods ago is none. */
+void generator_counts_init(struct generator *g, const struct machine_config *c,
+			   uint32_t stale);
+
+/** generator_counts_hear() - it told sum @field; @reset: it began at 0. */
+void generator_counts_hear(struct generator *g, int field, bool reset);
+
+/** generator_counts_read() - once a period, after what it told: the shares. */
+void generator_counts_read(struct generator *g, struct io_inputs *in);
 
 /* -- generator_can.c ------------------------------------------------------- */
 
@@ -134,6 +171,26 @@ void generator_can_read(struct generator *g);
  *  io_gpio_open(). */
 int generator_lines_open(struct generator *g, const struct machine_config *c,
 			 struct interp_diag *diag);
+
+/* -- generator_dac.c ------------------------------------------------------- */
+
+/** generator_dac_open() - its channels in @sysfs, at zero, and the thread that
+ *  writes them.  Return: as io_gpio_open(). */
+int generator_dac_open(struct generator *g, const char *sysfs,
+		       struct interp_diag *diag);
+
+/** generator_dac_close() - all at zero.  Startup only. */
+void generator_dac_close(struct generator *g);
+
+/** generator_dac_write() - what is to be there next. */
+void generator_dac_write(struct generator *g);
+
+/** generator_dac_read() - what of that is there, or failed. */
+void generator_dac_read(struct generator *g);
+
+/** generator_dac_waits() - is what was asked last not there yet, or not for
+ *  settle_ms? */
+bool generator_dac_waits(const struct generator *g);
 
 /* -- generator_modbus.c ---------------------------------------------------- */
 

@@ -73,6 +73,9 @@ struct io_inputs {
 	bool gap_valid;			/* false: no gap sensor, or it is ill */
 	struct io_shares shares;	/* from a generator that counts */
 	bool shares_valid;
+	bool shares_old;		/* they are of an earlier period */
+	bool shares_due;		/* none yet since there are sparks, and
+					 * they are not late */
 	double energy_j;		/* of the discharges of the last period,
 					 * from a generator that counts it */
 	bool energy_valid;

@@ -30,6 +30,7 @@ enum gap_source {
 	GAP_SHARES,
 	GAP_LINES,
 	GAP_CAN,
+	GAP_COUNTS,
 	GAP_NSOURCES
 };
 
@@ -90,6 +91,9 @@ struct cycle_gap_config {
 					 * short */
 	double share_open;		/* from this share of opens on it is
 					 * open */
+	double share_mm;		/* feed that one reading is good for */
+	double share_pulses;		/* that a reading is of */
+	double share_stale_ms;		/* then there is none any more */
 	double retract_mm_s;		/* speed of a retract */
 	enum retract_to retract_to;
 	double retract_limit_mm;	/* there it stands and waits */

@@ -22,15 +22,21 @@
 
 #define COUNT(a)	(sizeof(a) / sizeof((a)[0]))
 
-/* A machine of lines that has a gap. */
-#define LINES_MACHINE	"[machine]\nbackend = gpio\nperiod_us = 200\n" \
+#define GPIO_AXES	"[machine]\nbackend = gpio\nperiod_us = 200\n" \
 	"[axis.A]\npresent = no\n[axis.B]\npresent = no\n" \
 	"[axis.C]\npresent = no\n[axis.U]\npresent = no\n" \
 	"[axis.V]\npresent = no\n[axis.X]\nv_max_mm_s = 1\n" \
 	"[axis.Y]\nv_max_mm_s = 1\n[axis.Z]\nv_max_mm_s = 1\n" \
-	"[jump]\nv_max_mm_s = 1\n[gap]\nsource = lines\n[gpio]\n" \
+	"[jump]\nv_max_mm_s = 1\n"
+#define GPIO_LINES	"[gpio]\n" \
 	"step_X = 1\ndir_X = 2\nstep_Y = 3\ndir_Y = 4\nstep_Z = 5\n" \
-	"dir_Z = 6\ngap_open = 7\ngap_short = 8\n"
+	"dir_Z = 6\n"
+
+/* A machine of lines that has a gap; and one whose gap is read by a
+ * converter. */
+#define LINES_MACHINE	GPIO_AXES "[gap]\nsource = lines\n" GPIO_LINES \
+	"gap_open = 7\ngap_short = 8\n"
+#define ADC_MACHINE	GPIO_AXES GPIO_LINES "adc = adc0\nadc_ratio = 20\n"
 
 static char path[] = "/tmp/test_config.XXXXXX";
 

@@ -15,6 +15,14 @@ struct refusal {
 	"[generator]\ninterface = plc\n"
 #define MODBUS	"[machine]\nbackend = null\n[generator]\ninterface = modbus\n"
 
+#define BY_ADC	ADC_MACHINE "spark = 9\nwatchdog_by = its own\n" \
+	"estop_by = its own\n" \
+	"[generator]\ninterface = modbus\nmodbus = /dev/ttyS0\n" \
+	"peak_a = register 1 scale 0.1\n"
+#define COUNTING	"told_opens = input 40 bits 32\n" \
+	"told_sparks = input 42 bits 32\ntold_shorts = input 44 bits 32\n"
+#define DAC	"[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+
 static const struct refusal refusals[] = {
 	/* Names. */
 	{ "[gap]\nservo_volt = 15\n", 2, 1,
@@ -296,6 +304,59 @@ static const struct refusal refusals[] = {
 	  "a node of 1 to 95" },
 	{ BY_PLC "sense = plc\n", 7, 0, "those take a round trip: it must be "
 	  "a line", "lines 5 6" },
+	/* Counts for the gap servo. */
+	{ "[gap]\nsource = counts\n", 2, 0, "nothing feels the gap without "
+	  "sparks", "backend sim source = shares" },
+	{ BY_ADC COUNTING "[gap]\nsource = counts\nshare_stale_ms = 149\n",
+	  43, 0, "gap.share_stale_ms 149 is less than two "
+	  "generator.modbus_every_ms and a modbus_timeout_ms",
+	  "at least 150" },
+	{ BY_ADC "told_sparks = input 42 bits 32\n"
+	  "told_shorts = input 44 bits 32\n[gap]\nsource = counts\n"
+	  "share_stale_ms = 150\n", 41, 0,
+	  "gap.source is counts and generator.told_opens is none",
+	  "told_sparks and told_shorts" },
+	{ BY_ADC "told_opens = input 40 bits 32\ntold_sparks = input 42\n"
+	  "told_shorts = input 44 bits 32\n[gap]\nsource = counts\n"
+	  "share_stale_ms = 150\n", 39, 0,
+	  "generator.told_sparks has bits 16", "bits 32 at least" },
+	{ ADC_MACHINE "spark = 9\nwatchdog_by = its own\nestop_by = its "
+	  "own\n[plc]\ninterface = can1\n[generator]\ninterface = plc\n"
+	  "[gap]\nsource = counts\n", 39, 0,
+	  "gap.source is counts and generator.told_opens is none",
+	  "of a generator on can or modbus" },
+	{ "[machine]\nbackend = can402\nperiod_us = 1000\n[axis.Y]\n"
+	  "present = no\n[axis.Z]\npresent = no\n[axis.A]\npresent = no\n[axis.B]\n"
+	  "present = no\n[axis.C]\npresent = no\n[axis.U]\npresent = no\n"
+	  "[axis.V]\npresent = no\n[can402]\nnode_X = 5\ngap_id = 1008\n"
+	  "[generator]\ninterface = can\ncan_id = 1009\n"
+	  "told_opens = can 1012 byte 0 bits 32\n"
+	  "told_sparks = can 1012 byte 4 bits 32\n"
+	  "told_shorts = can 1013 byte 0 bits 32\n[gap]\nsource = counts\n"
+	  "share_stale_ms = 3\n", 29, 0,
+	  "gap.share_stale_ms 3 is less than four periods", "at least 4" },
+	/* Converters. */
+	{ DAC "peak_a = dac\n", 5, 0, "has no device", "dac DEVICE voltageN" },
+	{ DAC "peak_a = dac iio:device0 voltage to 10\n", 5, 0,
+	  "has no channel voltageN or currentN", "dac DEVICE" },
+	{ DAC "peak_a = dac iio:device0 voltage0 scale 2\n", 5, 0,
+	  "no highest output: to N", "to V" },
+	{ DAC "peak_a = dac iio:device0 voltage0 zero 4 to 4\n", 5, 0,
+	  "no highest output", "dac DEVICE" },
+	{ DAC "peak_a = dac iio:device0 voltage0 scale 0 to 10\n", 5, 0,
+	  "has no scale above 0", "dac DEVICE" },
+	{ DAC "peak_a = dac iio:device0 voltage0 to 10 scale\n", 5, 0,
+	  "none of scale, zero, to", "dac DEVICE" },
+	{ DAC "ignition_v = dac iio:device0 voltage0 scale 0.1 to 10\n", 5, 0,
+	  "cannot hold a value of the field", "dac DEVICE" },
+	{ DAC "polarity = dac iio:device0 voltage0 to 10\n", 5, 0,
+	  "is of a field that is on or off", "dac DEVICE" },
+	{ DAC "told_peak_a = dac iio:device0 voltage0 to 10\n", 5, 0,
+	  "is told by a converter's output", "dac DEVICE" },
+	{ DAC "peak_a = dac ad5624r voltage0 to 10\n"
+	  "ignition_v = dac ad5624r voltage0 scale 30 to 10\n", 6, 0,
+	  "generator.ignition_v and generator.peak_a are both ad5624r voltage0",
+	  "a channel of its own" },
 	{ BY_PLC "told_sparks = plc\n", 7, 0, "is a sum, and the PLC has no "
 	  "signal for it", "or plc, the PLC's own signal" },
 	{ BY_PLC "on_us = plc scale 0.1\n", 7, 0, "has a word after plc",

@@ -163,6 +163,46 @@ static void the_first_cycle_with_power_has_no_shares_yet(void **st)
 	}
 }
 
+/* Counts that come later than the pulses. */
+static void it_does_not_feed_on_counts_that_are_not_there(void **st)
+{
+	struct cycle_config k = with_source(GAP_COUNTS);
+	struct rig r;
+	double at;
+
+	(void)st;
+	k.gap.share_mm = 0.005;
+	begin_cut(&r, &k);
+	until(&r, STATE_APPROACH, OPEN_V, 1000);
+	r.in.shares_due = true;
+	steps(&r, OPEN_V, 2);
+	at = place(&r);
+	/* Whatever the voltage says: with sparks it is another one. */
+	for (int i = 0; i < 50; i++)
+		step(&r, i % 2 ? SHORTED_V : OPEN_V);
+	assert_near(place(&r), at, 0.003);
+	assert_int_equal(r.c.state, STATE_APPROACH);
+	assert_true(r.out.power);
+	r.in.shares_due = false;
+	shares(&r, 0.6, 0.4, 0, 0);
+	step(&r, SHORTED_V);
+	assert_int_equal(r.c.state, STATE_ERODE);
+	at = place(&r);
+	r.in.shares_old = true;
+	steps(&r, SHORTED_V, 50);
+	assert_in_range(lround(1e6 * (place(&r) - at)), 4900, 9000);
+	r.in.shares_old = false;
+	step(&r, SHORTED_V);
+	r.in.shares_old = true;
+	at = place(&r);
+	steps(&r, SHORTED_V, 50);
+	assert_true(place(&r) - at > 0.0049);
+	r.in.shares_valid = false;
+	step(&r, OPEN_V);
+	assert_int_equal(r.c.fault.first, FAULT_GAP_LOST);
+	rig_free(&r);
+}
+
 static void three_lines_are_three_zones(void **st)
 {
 	const struct cycle_config k = with_source(GAP_LINES);
@@ -388,6 +428,7 @@ int main(void)
 		cmocka_unit_test(a_filter_begins_anew_when_power_goes),
 		cmocka_unit_test(shares_at_their_set_value_hold_the_servo_voltage),
 		cmocka_unit_test(the_first_cycle_with_power_has_no_shares_yet),
+		cmocka_unit_test(it_does_not_feed_on_counts_that_are_not_there),
 		cmocka_unit_test(three_lines_are_three_zones),
 		cmocka_unit_test(can_gives_shares_or_a_voltage),
 		cmocka_unit_test(a_voltage_that_cannot_be_is_a_lost_gap),

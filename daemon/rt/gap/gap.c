@@ -64,7 +64,7 @@ static bool shares_ok(const struct io_inputs *in)
 
 /* -- The signal, by source ------------------------------------------------- */
 
-static void from_voltage(const struct cycle *c, const struct io_inputs *in,
+static void from_voltage(struct cycle *c, const struct io_inputs *in,
 			 struct gap_reading *r)
 {
 	r->valid = voltage_ok(c, in);
@@ -74,17 +74,13 @@ static void from_voltage(const struct cycle *c, const struct io_inputs *in,
 	r->is_open = r->valid && r->v > c->gap.open_v;
 }
 
-/* If there were no pulses to count, the sensing voltage is used. */
-static void from_shares(const struct cycle *c, const struct io_inputs *in,
-			struct gap_reading *r)
+static void weigh(const struct cycle *c, const struct io_inputs *in,
+		  struct gap_reading *r)
 {
 	const struct cycle_gap_config *g = &c->gap;
 	const double open = (double)in->shares.open;
 	const double bad = (double)in->shares.shorted + (double)in->shares.arc;
 
-	from_voltage(c, in, r);
-	if (c->gap_past.powered < 2 && in->gap_valid)
-		return;
 	r->valid = shares_ok(in);
 	if (!r->valid)
 		return;
@@ -94,8 +90,47 @@ static void from_shares(const struct cycle *c, const struct io_inputs *in,
 	r->is_open = open >= g->share_open;
 }
 
+/* If there were no pulses to count, the sensing voltage is used. */
+static void from_shares(struct cycle *c, const struct io_inputs *in,
+			struct gap_reading *r)
+{
+	from_voltage(c, in, r);
+	if (c->gap_past.powered >= 2 || !in->gap_valid)
+		weigh(c, in, r);
+}
+
+/* Nothing is known yet.  It is open, and it stands: it is blind. */
+static void await(struct cycle *c, struct gap_reading *r)
+{
+	r->valid = r->is_open = r->blind = true;
+	r->contact = false;
+	r->now_v = 2 * c->gap.open_v;
+	c->gap_past.awaits = true;
+}
+
+/* The filter begins with the first reading, and each is good for some way. */
+static void from_counts(struct cycle *c, const struct io_inputs *in,
+			struct gap_reading *r)
+{
+	struct gap_memory *m = &c->gap_past;
+
+	if (in->shares_due && m->powered >= 2) {
+		from_voltage(c, in, r);
+		await(c, r);
+		return;
+	}
+	if (m->awaits)
+		m->npast = m->next = 0;
+	m->awaits = false;
+	from_shares(c, in, r);
+	if (!in->shares_old)
+		m->read_mm = place_mm(c);
+	r->blind = c->out.power &&
+		   fabs(place_mm(c) - m->read_mm) >= c->gap.share_mm;
+}
+
 /* Three comparators, each of them a line that is 0 or 1. */
-static void from_lines(const struct cycle *c, const struct io_inputs *in,
+static void from_lines(struct cycle *c, const struct io_inputs *in,
 		       struct gap_reading *r)
 {
 	const struct io_shares *s = &in->shares;
@@ -117,7 +152,7 @@ static void from_lines(const struct cycle *c, const struct io_inputs *in,
 	r->v = in->gap_valid && isfinite(in->gap_v) ? in->gap_v : r->now_v;
 }
 
-static void from_can(const struct cycle *c, const struct io_inputs *in,
+static void from_can(struct cycle *c, const struct io_inputs *in,
 		     struct gap_reading *r)
 {
 	if (in->shares_valid)
@@ -126,7 +161,7 @@ static void from_can(const struct cycle *c, const struct io_inputs *in,
 		from_voltage(c, in, r);
 }
 
-static void (*const sources[GAP_NSOURCES])(const struct cycle *,
+static void (*const sources[GAP_NSOURCES])(struct cycle *,
 					   const struct io_inputs *,
 					   struct gap_reading *) = {
 	[GAP_SIM]	= from_voltage,
@@ -134,6 +169,7 @@ static void (*const sources[GAP_NSOURCES])(const struct cycle *,
 	[GAP_SHARES]	= from_shares,
 	[GAP_LINES]	= from_lines,
 	[GAP_CAN]	= from_can,
+	[GAP_COUNTS]	= from_counts,
 };
 
 /* -- Filters --------------------------------------------------------------- */
@@ -197,7 +233,8 @@ static double arcing_by_voltage(const struct cycle *c, struct gap_memory *m,
 	const double n = fmax(1, c->gap.arcing_cycles);
 	const double d = v - m->arcing_mean_v;
 
-	if (!c->out.power || c->gap.arcing_sigma_v <= 0)
+	if (!c->out.power || c->gap.arcing_sigma_v <= 0 ||
+	    c->gap.source == GAP_COUNTS)
 		return 0;
 	if (m->arcing_cycles++ == 0) {
 		m->arcing_mean_v = v;
@@ -221,7 +258,8 @@ static bool may_stand(const struct cycle *c, const struct gap_reading *r)
 {
 	return c->gap.source == GAP_LINES ||
 	       (r->is_open && (c->gap.source == GAP_SHARES ||
-			       c->gap.source == GAP_CAN));
+			       c->gap.source == GAP_CAN ||
+			       c->gap.source == GAP_COUNTS));
 }
 
 static bool suspect(const struct cycle *c, struct gap_memory *m,

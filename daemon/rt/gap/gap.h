@@ -15,6 +15,10 @@
  * 			open gap twice open_v.  If several lines are on, a
  * 			short counts before a spark and a spark before an open
  * 	can		shares if the backend has them, else the voltage
+ * 	counts		shares of what the generator has counted.  Their
+ * 			readings are old, and come seldom: one is good for
+ * 			share_mm of feed.  Before the first one, and beyond
+ * 			that, it is blind: it stands
  *
  * A reading is valid only if it can be true: finite, below zero by no more than
  * the offset of an amplifier, not above 1.5 times the ignition voltage; shares
@@ -46,6 +50,8 @@ struct gap_reading {
 	bool is_short;			/* for short_cycles in a row */
 	bool is_open;			/* nothing to cut yet */
 	bool suspect;			/* stuck, or noisy beyond belief */
+	bool blind;			/* no reading for this place: it
+					 * neither feeds nor creeps */
 };
 
 /* What sensing keeps from cycle to cycle. */
@@ -61,6 +67,8 @@ struct gap_memory {
 	double same_mm;			/* place since when */
 	double change_v;		/* mean change from cycle to cycle */
 	uint64_t powered;		/* cycles with power, in a row */
+	double read_mm;			/* place of the last new shares */
+	bool awaits;			/* no counts yet since power came on */
 };
 
 struct cycle;

@@ -70,7 +70,8 @@ double law_approach(struct cycle *c)
 
 	const bool sparks = !walk_positions(c);
 
-	if (c->sensed.contact || (feed < 0 && sparks) || lifts(c))
+	if (c->sensed.contact || c->sensed.blind || (feed < 0 && sparks) ||
+	    lifts(c))
 		return go_toward(c, 0);
 	return go_toward(c, cut_limit(c, c->sensed.is_open || !sparks ?
 					 g->approach_mm_s :
@@ -165,7 +166,7 @@ double law_erode(struct cycle *c)
 
 	c->servo.fade_mm_s *= larger(0, 1 - law_period_s(c) / FADE_S);
 	adopt(c, &l, v);
-	if (lifts(c)) {
+	if (lifts(c) || c->sensed.blind) {
 		c->servo.asked_mm_s = 0;
 		return go_toward(c, 0);
 	}

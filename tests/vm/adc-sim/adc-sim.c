@@ -4,7 +4,11 @@
  * bits signed, and a time stamp.  Channel 0 is what
  * /sys/module/adc_sim/parameters/raw says, with a count of noise; channel 1 is
  * always 777.  There is a sample each .../us, and none while .../still is 1.
+ *
+ * It has two outputs too, 12 bits of 2.5 mV.  Each value is in the kernel's
+ * trace, .../slow_ms after it was written; while .../deaf is 1 none is taken.
  */
+#include <linux/delay.h>
 #include <linux/hrtimer.h>
 #include <linux/iio/buffer.h>
 #include <linux/iio/iio.h>
@@ -20,6 +24,14 @@ static int raw = 1000;
 module_param(raw, int, 0644);
 static int still;
 module_param(still, int, 0644);
+static int slow_ms;
+module_param(slow_ms, int, 0644);
+static int deaf;
+module_param(deaf, int, 0644);
+
+#define OUT_TOP		4095
+
+static int out[2];
 
 struct adc {
 	struct iio_dev *dev;
@@ -78,15 +90,39 @@ static int read_raw(struct iio_dev *dev, struct iio_chan_spec const *chan,
 		    int *val, int *val2, long mask)
 {
 	if (mask == IIO_CHAN_INFO_RAW) {
-		*val = chan->channel ? 777 : raw;
+		*val = chan->output ? out[chan->channel] :
+		       chan->channel ? 777 : raw;
 		return IIO_VAL_INT;
 	}
-	*val = 0;
-	*val2 = 500000;			/* 0.5 mV a count */
+	*val = chan->output ? 2 : 0;
+	*val2 = 500000;			/* 2.5 mV, 0.5 mV a count */
 	return IIO_VAL_INT_PLUS_MICRO;
 }
 
-static const struct iio_info info = { .read_raw = read_raw };
+static int write_raw(struct iio_dev *dev, struct iio_chan_spec const *chan,
+		     int val, int val2, long mask)
+{
+	if (mask != IIO_CHAN_INFO_RAW || val < 0 || val > OUT_TOP)
+		return -EINVAL;
+	if (READ_ONCE(slow_ms))
+		msleep(READ_ONCE(slow_ms));
+	if (READ_ONCE(deaf))
+		return -EIO;
+	out[chan->channel] = val;
+	trace_printk("output %d is %d\n", chan->channel, val);
+	return 0;
+}
+
+static const struct iio_info info = {
+	.read_raw = read_raw, .write_raw = write_raw
+};
+
+#define OUTPUT(n) { \
+	.type = IIO_VOLTAGE, .indexed = 1, .channel = n, .output = 1, \
+	.info_mask_separate = BIT(IIO_CHAN_INFO_RAW), \
+	.info_mask_shared_by_type = BIT(IIO_CHAN_INFO_SCALE), \
+	.scan_index = -1, \
+}
 
 #define CHANNEL(n) { \
 	.type = IIO_VOLTAGE, .indexed = 1, .channel = n, \
@@ -98,7 +134,7 @@ static const struct iio_info info = { .read_raw = read_raw };
 }
 
 static const struct iio_chan_spec channels[] = {
-	CHANNEL(0), CHANNEL(1), IIO_CHAN_SOFT_TIMESTAMP(2)
+	CHANNEL(0), CHANNEL(1), OUTPUT(0), OUTPUT(1), IIO_CHAN_SOFT_TIMESTAMP(2)
 };
 
 /* It converts both always; the kernel gives a reader those it asked for. */
