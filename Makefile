@@ -391,9 +391,11 @@ $(B)/tests/bench/plan.o: INC_bench += -Iclients/plan
 $(B)/bench/plan: $(B)/tests/bench/plan.o $(filter-out %/main.o,$(call obj,$(PLAN))) $(PLAN_CC:%.cc=$(B)/%.o) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(INTERP_A) $(COMMON_A)
 	$(call link,-lompl -lstdc++ -ladmesh -lglpk -linih -ljansson -lpthread -lm)
 
-$(B)/bench/wait: $(SETUP_O)
+$(B)/tests/bench/spark.o: INC_bench += -Itests/unit $(MODBUS_INC)
+$(B)/bench/wait $(B)/bench/spark: $(SETUP_O)
 $(B)/bench/%: $(B)/tests/bench/%.o $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(IO_O) $(RT_O) $(TRIED_A) $(INTERP_A)
-	$(call link,-linih $(LIBGPIOD) -lmodbus $(if $(findstring curves,$@),-lsisl) -lpthread -lnlopt -lm)
+	$(call link,-linih $(LIBGPIOD) -lmodbus $(if $(findstring curves,$@),-lsisl) \
+		$(if $(findstring spark,$@),-lcmocka) -lpthread -lnlopt -lm)
 
 $(B)/peer/%: $(B)/tests/peer/%.o $(INTERP_A)
 	$(call link,$(if $(findstring sisl,$@),-lsisl) -lnlopt -lm)
