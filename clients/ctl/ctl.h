@@ -56,6 +56,7 @@ int ctl_electrode(struct ctl *c);
 int ctl_mdi(struct ctl *c);
 int ctl_new_machine(struct ctl *c);
 int ctl_offset(struct ctl *c);
+int ctl_tech(struct ctl *c);
 int ctl_generator(struct ctl *c);
 int ctl_command(struct ctl *c);
 int ctl_start(struct ctl *c);

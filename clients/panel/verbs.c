@@ -26,7 +26,7 @@
 #define PAST_BURST_S	0.5
 #define NUMBER		0x100u		/* it needs arg */
 #define LINES		0x200u		/* its text has several lines */
-#define LINES_MAX	600
+#define LINES_MAX	4000
 
 struct verb {
 	const char *name;
@@ -415,6 +415,9 @@ static const struct verb verbs[] = {
 	{ "electrode-measure", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
 	{ "electrodes", ROLE_VIEWER, run_ask, NULL, VERBS_ASK, NUMBER },
 	{ "offset",   ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, LINES },
+	{ "tech-set", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, LINES },
+	{ "tech-back", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
+	{ "tech-versions", ROLE_VIEWER, run_ask, NULL, VERBS_ASK, 0 },
 	{ "offsets",  ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
 	{ "text",     ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
 	{ "queue",    ROLE_VIEWER,   run_ask, NULL, VERBS_ASK, 0 },
@@ -448,7 +451,7 @@ void verbs_do(struct browser *b, const json_t *o)
 		if (!is_fit(&verbs[i], o)) {
 			refuse(b, n, EX_DATAERR, "job and text are words of "
 			       "less than 64 bytes (values on lines "
-			       "of their own: less than 600), arg is a number");
+			       "of their own: less than 4000), arg is a number");
 			return;
 		}
 		if (s->role >= verbs[i].role) {

@@ -158,8 +158,8 @@ static void tell(struct jobs *j, const struct forecasting *f, double s)
 	store_set_forecast(j->store, f->n, s, s < 0 ? why : "");
 	queue_recount(j);
 	if (s < 0)
-		jobs_note(j, &n, "job %s: no forecast: how long it takes cannot be told: %s",
-			  f->name, why);
+		jobs_note(j, &n, "job %s: no forecast: how long it takes "
+			  "cannot be told: %s", f->name, why);
 	else
 		jobs_note(j, &n, "job %s takes %d h %02d min %02d s, by "
 			  "forecast", f->name, min / 60, min % 60,

@@ -10,8 +10,8 @@
  * machine time.  Until it is done there is no estimate.  For a job that is
  * loaded, or if this service ends, it gives up.
  *
- * One that takes longer than FORECASTER_FIRST_S of machine time is put off, also
- * the one in the machine: those that have none yet come first.
+ * One that takes longer than FORECASTER_FIRST_S of machine time is put off,
+ * also the one in the machine: those that have none yet come first.
  *
  * Threads: one, that of the event loop, which also gets the result.
  */

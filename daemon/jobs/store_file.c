@@ -157,6 +157,11 @@ static const char *const steps[] = {
 
 	/* Why that cannot be told. */
 	"ALTER TABLE job ADD COLUMN forecast_why TEXT NOT NULL DEFAULT '';",
+
+	/* Versions of the technology table: store_tech.h. */
+	"CREATE TABLE tech("
+	" n INTEGER PRIMARY KEY AUTOINCREMENT, utime INTEGER NOT NULL,"
+	" by TEXT NOT NULL, what TEXT NOT NULL, text TEXT NOT NULL);",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

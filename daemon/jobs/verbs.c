@@ -19,6 +19,7 @@
 #include "nearest.h"
 #include "store_trust.h"
 #include "verbs.h"
+#include "verbs_tech.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -755,6 +756,14 @@ static const struct verb verbs[] = {
 	{ "electrode-measure", ROLE_OPERATOR, VERB_ACTS, electrode_measure,
 	  VERB_OWN, "" },
 	{ "events", ROLE_VIEWER, VERB_ASKS, verbs_events, VERB_OWN, "" },
+	{ "tech-set", ROLE_OPERATOR, VERB_ACTS, verbs_tech_set, VERB_OWN, "" },
+	{ "tech-save", ROLE_OPERATOR, VERB_ACTS, verbs_tech_save, VERB_OWN,
+	  "" },
+	{ "tech-back", ROLE_OPERATOR, VERB_ACTS, verbs_tech_back, VERB_OWN,
+	  "" },
+	{ "tech-text", ROLE_VIEWER, VERB_ASKS, verbs_tech_text, VERB_OWN, "" },
+	{ "tech-versions", ROLE_VIEWER, VERB_ASKS, verbs_tech_versions,
+	  VERB_OWN, "" },
 	{ "checkpoint", ROLE_VIEWER, VERB_ASKS, verbs_checkpoint, VERB_OWN,
 	  "" },
 	{ "store", ROLE_VIEWER, VERB_ASKS, verbs_store, VERB_OWN, "" },
@@ -769,7 +778,7 @@ static const struct verb verbs[] = {
 
 static void refuse_verb(struct jobs *j, const struct jobs_lcm_command *c)
 {
-	char reason[512];
+	char reason[1024];
 	size_t n = (size_t)snprintf(reason, sizeof(reason),
 				    "no such verb; one of");
 

@@ -2,6 +2,7 @@
 """Technology: tables, values set while a job runs, and their history."""
 
 import hashlib
+import json
 import math
 from pathlib import Path
 
@@ -227,3 +228,80 @@ def test_a_submit_is_refused_for_what_does_not_reach_the_generator(tmp_path):
         assert "shop.tech:3:1: error: C100: on_us 8 us does not reach the " \
             "generator" in a.reason
         assert "[generator] by_hand = on_us" in a.reason
+
+
+# -- Edited and saved on the host
+
+
+def versions(m):
+    return json.loads(m.ctl("--json", "tech", "versions").stdout)
+
+
+def test_a_value_is_saved_and_a_version_comes_back(shop, tmp_path):
+    file = tmp_path / "shop.tech"
+    assert versions(shop) == []
+    p = shop.ctl("tech", "set", "C120.servo_v=30", "C100.on_us=-")
+    assert p.returncode == 0 and "saved" in p.stdout, p.stderr
+    assert "30" in file.read_text() and file.read_text() != TABLE
+    v = versions(shop)
+    assert [x["n"] for x in v] == [2, 1]
+    assert v[0]["what"].split() == ["C120.servo_v=30", "C100.on_us=-"]
+    assert v[0]["by"] and v[1]["what"] == "as it was found"
+    assert shop.ctl("tech", "show", "1").stdout == TABLE
+    # The next job has it.
+    c = running(shop)
+    assert json.loads(c.ask("values").body)["values"]["servo_v"] == 30
+    c.ask("stop")
+    c.status_where(lambda s: not s.job)
+    assert shop.ctl("tech", "back", "1").returncode == 0
+    assert file.read_text() == TABLE
+    assert versions(shop)[0]["what"] == "version 1 again"
+    # Saved as it is: no new version.
+    assert shop.ctl("tech", "save", str(file)).returncode == 0
+    assert len(versions(shop)) == 3
+    assert [f.name for f in tmp_path.glob("shop.tech*")] == ["shop.tech"]
+
+
+@pytest.mark.parametrize("words, says", [
+    (("set", "C120.servo_v=9000"), "line 1: 'C120.servo_v=9000'"),
+    (("set", "C120.servo_v=30", "C120.on_us=x"), "line 2: 'C120.on_us=x'"),
+    (("set", "C999.servo_v=30"), "of a condition of the table"),
+    (("set", "C120.nothing=30"), "a field of"), (("set", "C120"), "line 1"),
+    (("set", "C120.servo_v="), "line 1"), (("set", "C120.servo_v=nan"), "line 1"),
+    (("set", "C120.servo_v=30x"), "line 1"),
+    # Each value is fine, and together they are upside down.
+    (("set", "C120.window_high_v=12", "C120.window_low_v=11",
+      "C120.servo_v=30"), "C120"),
+    (("back", "7"), "versions has them"), (("back", "0"), "versions has them"),
+    (("back", "1.5"), "versions has them"), (("show", "-1"), "versions has"),
+])
+def test_what_is_bad_is_refused_and_nothing_is_lost(shop, tmp_path, words, says):
+    p = shop.ctl("tech", *words)
+    assert p.returncode in (65, 66) and says in p.stderr, p.stderr
+    assert (tmp_path / "shop.tech").read_text() == TABLE
+    assert versions(shop) == []
+    assert [f.name for f in tmp_path.glob("shop.tech*")] == ["shop.tech"]
+
+
+def test_a_whole_table_that_is_bad_is_refused_with_its_line(shop, tmp_path):
+    bad = tmp_path / "bad.txt"
+    bad.write_text(TABLE + "C130, 9000, 8\n")
+    p = shop.ctl("tech", "save", str(bad))
+    assert p.returncode == 65 and "5:" in p.stderr and "servo_v" in p.stderr
+    assert (tmp_path / "shop.tech").read_text() == TABLE
+    bad.write_text(TABLE + "C130, 25, 8\n")
+    assert shop.ctl("tech", "save", str(bad)).returncode == 0
+    assert (tmp_path / "shop.tech").read_text() == TABLE + "C130, 25, 8\n"
+    # A table that was spoiled by hand is put right by a version, and kept.
+    (tmp_path / "shop.tech").write_text("nonsense")
+    assert shop.ctl("tech", "set", "C120.servo_v=30").returncode == 65
+    assert shop.ctl("tech", "back", "1").returncode == 0
+    assert (tmp_path / "shop.tech").read_text() == TABLE
+    assert shop.ctl("tech", "show", "3").stdout == "nonsense"
+
+
+def test_without_a_table_there_is_nothing_to_save(machine):
+    p = machine.ctl("tech", "set", "C120.servo_v=30")
+    assert p.returncode == 1 and "names no table" in p.stderr
+    assert machine.ctl("tech", "versions").stdout == "none was saved yet\n"
+    assert machine.ctl("tech", "back").returncode == 64

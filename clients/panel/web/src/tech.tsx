@@ -6,7 +6,9 @@ import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { parse, short } from "./format";
 import { link, type Field } from "./link";
-import { Card, Key } from "./parts";
+import { whyNot } from "./can";
+import { moment } from "./format";
+import { Card, Key, PressKey, act } from "./parts";
 import { save, useAsk } from "./use";
 import { unitWord } from "./values";
 import { fieldWord, t } from "./words";
@@ -58,8 +60,19 @@ function Compare(p: { rows: Row[]; fields: Field[] }): JSX.Element {
 			{[one, two].map((v) => <td><span class="n">{v[f.name] === undefined ? "\u2013" : short(v[f.name] as number)} <u>{unitWord(f.unit)}</u></span><i class="share" style={{ width: `${Math.abs(v[f.name] ?? 0) / most(f) * 100}%` }} /></td>)}</tr>)}</tbody></table></Card>;
 }
 
+interface Version { n: number; utime: number; by: string; what: string }
+
+/* What was saved on the host; each can come back. */
+function Versions(p: { file: string; again: () => void }): JSX.Element | null {
+	const [rows, , look] = useAsk<Version[]>("tech-versions", {}, 5000);
+	if (!rows?.length) return null;
+	const back = (n: number) => void act("tech-back", { arg: n }).then((ok) => { if (ok) { look(); p.again(); } });
+	return <Card title={t("tech.versions")} class="versions"><ul class="jobs">{rows.map((v, i) => <li key={v.n}><div class="job"><b>{v.n}</b><span>{v.what.trim().split("\n").join(", ")}</span><span class="n">{moment(v.utime / 1000)}{v.by && ` \u00b7 ${v.by}`}</span></div>
+		{i > 0 && <PressKey class="small" label={t("tech.backto", { n: v.n })} why={whyNot("send")} onPress={() => back(v.n)}>{t("tech.back")}</PressKey>}</li>)}</ul></Card>;
+}
+
 export function Tech(): JSX.Element {
-	const [tech, refused] = useAsk<Tech>("tech");
+	const [tech, refused, again] = useAsk<Tech>("tech");
 	const [edits, setEdits] = useState<Edits>({});
 	const all = link.hello?.fields ?? [], table = tech?.table;
 	if (refused) return <div class="column"><p class="note">{refused}</p></div>;
@@ -68,9 +81,11 @@ export function Tech(): JSX.Element {
 	if (!table) return <div class="column"><Card title={t("tech.table")}><p class="calm">{t("tech.none")}</p></Card>
 		<Card title={t("tech.machine")}><ul class="valuelist">{all.filter((f) => tech.base[f.name] !== undefined).map((f) => <li><div><span>{fieldWord(f.name, f.help)}</span><b>{short(tech.base[f.name] as number)} <u>{unitWord(f.unit)}</u></b></div></li>)}</ul></Card></div>;
 	const used = all.filter((f) => table.rows.some((r) => r.values[f.name] !== undefined));
+	const keep = () => void act("tech-set", { text: Object.entries(edits).map(([key, x]) => `${key}=${x}`).join("\n") }).then((ok) => { if (ok) { setEdits({}); again(); } });
 	const edited = Object.keys(edits).length > 0, name = tech.file.split("/").pop() ?? "table.tech";
 	return <div class="column wide">
 		<Card title={`${t("tech.table")}: ${name}`} right={<div class="keys">{edited && <Key class="small quiet" onPress={() => setEdits({})}>{t("tech.discard")}</Key>}
+			{edited && <PressKey id="techsave" class="small primary" why={whyNot("send")} onPress={() => keep()}>{t("tech.save")}</PressKey>}
 			<Key class="small" onPress={() => save(name.replace(/\.\w+$/, "") + ".tech", "text/plain", techText(table, all, edits))}>{t("tech.export")}</Key></div>}>
 			<p class="facts-line">{t("tech.electrode")}: <b>{table.electrode || "\u2013"}</b> {"\u00b7"} {t("tech.workpiece")}: <b>{table.workpiece || "\u2013"}</b></p>
 			{edited && <p class="note warn">{t("tech.edited", { file: tech.file })}</p>}
@@ -80,6 +95,7 @@ export function Tech(): JSX.Element {
 			{table.notes.map((n) => <p class="note">{n}</p>)}
 		</Card>
 		<Compare rows={table.rows.map((r) => ({ ...r, values: { ...r.values, ...Object.fromEntries(Object.entries(edits).filter(([k]) => k.startsWith(`${r.name}.`)).map(([k, x]) => [k.slice(r.name.length + 1), x])) } }))} fields={used} />
+		<Versions file={tech.file} again={again} />
 		{table.sequences.length > 0 && <Card title={t("tech.sequences")}>{table.sequences.map((q) => <p class="sequence"><b>Q{q.number}</b>{q.steps.map((x) => <span>{x}</span>)}</p>)}</Card>}
 	</div>;
 }

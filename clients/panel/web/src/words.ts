@@ -148,7 +148,8 @@ export const en = {
 	"setup.offsetnote": "Where the origins are on the machine. * was touched off, the others are those of the machine file.",
 	"setup.faster": "Step size", "setup.held": "while pressed", "setup.speed": "Speed",
 	"setup.held.about": "Moves while the key is pressed, and stands when it is let go or the connection is lost.",
-	"work.system": "Work system that is shown", "work.machine": "machine", "jobs.noforecast": "no forecast: {why}", "work.inforce": "The work system in force at the line that is cut",
+	"work.system": "Work system that is shown", "work.machine": "machine", "tech.save": "Save on the host", "tech.versions": "Versions", "tech.back": "Take back", "tech.backto": "Take version {n} back",
+	"jobs.noforecast": "no forecast: {why}", "work.inforce": "The work system in force at the line that is cut",
 	"off.turn": "Turn", "off.tiltx": "Rises along X", "off.tilty": "Rises along Y",
 	"el.x": "Shifts X (C at 0)", "el.y": "Shifts Y (C at 0)", "el.c": "Shifts C",
 	"off.edit": "Work offset {work}", "off.means": "What the numbers mean", "off.now": "origin now at",
@@ -191,7 +192,7 @@ export const en = {
 	"tech.compare": "Compare", "tech.with": "with", "tech.export": "Export as .tech",
 	"tech.electrode": "Electrode", "tech.workpiece": "Workpiece", "tech.field": "Field",
 	"tech.value": "Value", "tech.unit": "Unit", "tech.inforce": "in force",
-	"tech.edit": "Edit", "tech.edited": "Edited here only: export it, and put it in place of {file}.",
+	"tech.edit": "Edit", "tech.edited": "Not saved yet. Jobs have it when it is saved; {file} is kept as a version.",
 	"tech.machine": "machine file", "tech.same": "same", "tech.notes": "Notes",
 	"tech.discard": "Discard changes",
 

@@ -128,7 +128,8 @@ export const zh: Record<Word, string> = {
 	"setup.offsetnote": "各原点在机床上的位置。* 为对刀所得，其余来自机床文件。",
 	"setup.faster": "步长",
 	"setup.held": "按住", "setup.speed": "速度", "setup.held.about": "按住时移动；松开或断线即停。",
-	"work.system": "显示的工件坐标系", "work.machine": "机床", "jobs.noforecast": "无预计：{why}", "work.inforce": "当前行所用的工件坐标系",
+	"work.system": "显示的工件坐标系", "work.machine": "机床", "tech.save": "保存到主机", "tech.versions": "版本", "tech.back": "恢复", "tech.backto": "恢复版本 {n}",
+	"jobs.noforecast": "无预计：{why}", "work.inforce": "当前行所用的工件坐标系",
 	"off.turn": "转角", "off.tiltx": "沿 X 升高", "off.tilty": "沿 Y 升高",
 	"el.x": "X 偏移（C 在 0）", "el.y": "Y 偏移（C 在 0）", "el.c": "C 偏移",
 	"off.edit": "工件偏置 {work}", "off.means": "数值的含义", "off.now": "当前原点",
@@ -169,7 +170,7 @@ export const zh: Record<Word, string> = {
 	"tech.condition": "条件", "tech.sequences": "条件序列", "tech.compare": "比较", "tech.with": "与",
 	"tech.export": "导出 .tech", "tech.electrode": "电极", "tech.workpiece": "工件", "tech.field": "参数",
 	"tech.value": "值", "tech.unit": "单位", "tech.inforce": "生效中", "tech.edit": "编辑",
-	"tech.edited": "只在此处修改：请导出并替换 {file}。", "tech.machine": "机床文件", "tech.same": "相同",
+	"tech.edited": "尚未保存。保存后作业才使用；{file} 的原内容保留为一个版本。", "tech.machine": "机床文件", "tech.same": "相同",
 	"tech.notes": "说明", "tech.discard": "放弃修改",
 
 	"event.lost": "edmd 失联", "event.back": "edmd 已恢复",
