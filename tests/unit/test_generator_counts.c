@@ -310,6 +310,107 @@ static void one_that_counts_anew_gives_no_reading_of_that(void **state)
 	bed_unmake(&b);
 }
 
+/* -- Whatever it does ------------------------------------------------------ */
+
+#define PERIODS		1000000
+
+/* What was told with sparks since they came on. */
+struct witness {
+	double first[GENERATOR_NCOUNTS], last[GENERATOR_NCOUNTS];
+	int tellings;
+	uint32_t lit, since;		/* periods */
+};
+
+static void check_reading(const struct bed *b, const struct witness *w)
+{
+	const struct io_shares *s = &b->in.shares;
+	const double part[] = { (double)s->open, (double)s->spark,
+				(double)s->arc, (double)s->shorted };
+	double sum = 0;
+
+	assert_false(b->in.shares_valid && b->in.shares_due);
+	if (!b->in.shares_valid)
+		return;
+	/* Two tellings with sparks at the least, and not too long ago. */
+	assert_true(w->lit > 1 && w->tellings > 1);
+	assert_true(w->since <= b->g->counts.stale + 1);
+	for (int i = 0; i < GENERATOR_NCOUNTS; i++) {
+		assert_true(part[i] >= 0 && part[i] <= 1);
+		assert_true(part[i] == 0 || w->last[i] > w->first[i]);
+		sum += part[i];
+	}
+	assert_near(sum, 1, 1e-5);
+}
+
+static void witness_telling(struct bed *b, struct witness *w)
+{
+	if (w->tellings++ == 0)
+		memcpy(w->first, b->count, sizeof(w->first));
+	memcpy(w->last, b->count, sizeof(w->last));
+	w->since = 0;
+}
+
+/* Now and then: whole, half of one, or it was switched off and on. */
+static void random_telling(struct bed *b, struct witness *w, uint64_t *seed)
+{
+	switch (rnd(seed) % 24) {
+	case 0:
+		send_pair(b, 1012, b->count[0], b->count[1]);
+		break;
+	case 1:
+		/* So far that it is seen: it cannot come so far again. */
+		if (fmin(b->count[2], b->count[3]) < 20000)
+			break;
+		for (int i = 0; i < GENERATOR_NCOUNTS; i++) {
+			b->count[i] = 0;
+			w->first[i] = -1;
+		}
+		break;
+	case 2: case 3: case 4: case 5: case 6:
+		tell_counts(b, 0);
+		witness_telling(b, w);
+		break;
+	default:
+		break;
+	}
+}
+
+static void every_reading_is_of_sparks_since_they_came_on(void **state)
+{
+	uint64_t seed = seed_take(), readings = 0, none = 0;
+	struct witness w = { .tellings = 0 };
+	struct bed b;
+
+	(void)state;
+	bed_make(&b, "share_stale_ms = 60\n");
+	for (int i = 0; i < SEED_ROUNDS(PERIODS); i++) {
+		const bool sparks = b.out.power;
+		const bool silent = i / 500 % 10 == 4;
+
+		if (rnd(&seed) % 100 == 0)
+			b.out.power = !b.out.power;
+		count(&b, sparks * (double)(rnd(&seed) % 9),
+		      sparks * (double)(rnd(&seed) % 9),
+		      sparks * (double)(rnd(&seed) % 3),
+		      sparks * (double)(rnd(&seed) % 3));
+		w.since++;
+		w.lit = sparks ? w.lit + 1 : 0;
+		w.tellings = sparks ? w.tellings : 0;
+		if (!silent)
+			random_telling(&b, &w, &seed);
+		period(&b);
+		check_reading(&b, &w);
+		readings += b.in.shares_valid && !b.in.shares_old;
+		none += sparks && !b.in.shares_valid && !b.in.shares_due;
+		while (log_has(&b, "generator"))
+			;
+	}
+	print_message("%llu readings; %llu periods with sparks and none\n",
+		      (unsigned long long)readings, (unsigned long long)none);
+	assert_true(readings > 1000 && none > 100);
+	bed_unmake(&b);
+}
+
 /* -- A cut ----------------------------------------------------------------- */
 
 struct counter {
@@ -473,6 +574,7 @@ int main(void)
 		cmocka_unit_test(
 			none_from_the_first_spark_on_are_none_in_share_stale_ms),
 		cmocka_unit_test(one_that_counts_anew_gives_no_reading_of_that),
+		cmocka_unit_test(every_reading_is_of_sparks_since_they_came_on),
 		cmocka_unit_test(it_cuts_on_by_counts_that_come_seldom_and_late),
 	};
 
