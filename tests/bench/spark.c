@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * spark.c - from a change of condition to the first spark, by the interface that
- * reaches the generator
+ * spark.c - from a change of condition to the first spark, by the interface
+ * that reaches the generator
  *
- * A whole cycle at the pace of the clock, 1 ms a period, with a generator in front of
- * it that has what it was asked for at once: what is left is the way there and back,
- * and settle_ms where it tells nothing.  A serial line takes the time of its bytes:
- * 11 bits each, at 19,200 a second.
+ * A whole cycle at the pace of the clock, 1 ms a period, with a generator in
+ * front of it that has what it was asked for at once: what is left is the way
+ * there and back, and settle_ms where it tells nothing.  A serial line takes
+ * the time of its bytes: 11 bits each, at 19,200 a second.
  *
  * Prints the median and the worst of CHANGES, in ms.
  */
@@ -228,7 +228,8 @@ static void by_can(const char *name, const char *more)
 	char text[300];
 	int fd[2];
 
-	snprintf(text, sizeof(text), "interface = can\ncan_id = 1009\n%s", more);
+	snprintf(text, sizeof(text), "interface = can\ncan_id = 1009\n%s",
+		 more);
 	g = make(&s, text);
 	if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, fd) < 0)
 		exit(1);

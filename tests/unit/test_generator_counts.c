@@ -573,9 +573,12 @@ int main(void)
 		cmocka_unit_test(counts_that_stop_are_none_in_share_stale_ms),
 		cmocka_unit_test(
 			none_from_the_first_spark_on_are_none_in_share_stale_ms),
-		cmocka_unit_test(one_that_counts_anew_gives_no_reading_of_that),
-		cmocka_unit_test(every_reading_is_of_sparks_since_they_came_on),
-		cmocka_unit_test(it_cuts_on_by_counts_that_come_seldom_and_late),
+		cmocka_unit_test(
+			one_that_counts_anew_gives_no_reading_of_that),
+		cmocka_unit_test(
+			every_reading_is_of_sparks_since_they_came_on),
+		cmocka_unit_test(
+			it_cuts_on_by_counts_that_come_seldom_and_late),
 	};
 
 	return cmocka_run_group_tests(tests, make_file, remove_file);
