@@ -266,7 +266,7 @@ static void counts_that_stop_are_none_in_share_stale_ms(void **state)
 	}
 }
 
-static void none_from_the_first_spark_on_are_none_in_share_stale_ms(void **st)
+static void counts_that_never_come_are_none_in_share_stale_ms(void **st)
 {
 	struct bed b;
 
@@ -572,7 +572,7 @@ int main(void)
 			a_reading_is_of_enough_pulses_or_of_enough_time),
 		cmocka_unit_test(counts_that_stop_are_none_in_share_stale_ms),
 		cmocka_unit_test(
-			none_from_the_first_spark_on_are_none_in_share_stale_ms),
+			counts_that_never_come_are_none_in_share_stale_ms),
 		cmocka_unit_test(
 			one_that_counts_anew_gives_no_reading_of_that),
 		cmocka_unit_test(
