@@ -454,7 +454,7 @@ static void counter_close(void *self)
 struct cut {
 	double mm, forward_um;	/* the farthest of one reading */
 	uint64_t retracts;
-	int fault;
+	enum cycle_fault fault;
 };
 
 static struct made deep_cut(void)
