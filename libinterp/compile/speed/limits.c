@@ -161,13 +161,11 @@ static struct interp_straight kept_of(const struct choice *k, int share)
 	};
 }
 
-/* By itself, and at F. */
 static double part_s(const struct limits *w, uint32_t from, uint32_t to,
 		     const struct interp_straight *kept)
 {
 	write_segs(w, from, to, kept);
-	return pass_moves_s(&w->pass, from, to, false, w->v2) +
-	       pass_moves_s(&w->pass, from, to, true, w->v2);
+	return pass_moves_s(&w->pass, from, to, w->v2);
 }
 
 static double time_s(const struct limits *w, const struct choice *k, int share)
@@ -260,56 +258,68 @@ static void write_ceilings(const struct limits *w)
 	}
 }
 
-static void note_soft(struct limits *w)
+/* Do some segments allow so much more than others that a stand between them may
+ * pay? */
+static bool differ(const struct limits *w)
 {
-	struct pass_soft *k = &w->pass.soft;
+	struct interp_straight least = { INFINITY, INFINITY }, most = { 0, 0 };
 
-	*k = (struct pass_soft) { INFINITY, 0, INFINITY, 0 };
 	for (uint32_t i = 1; i < w->pass.end; i++) {
-		const double a = PLAIN * (double)w->looks.of[i].a_mm_s2;
-		const double j = PLAIN * (double)w->looks.of[i].j_mm_s3;
+		const struct looks *of = &w->looks.of[i];
 
-		if (w->looks.of[i].n == 0)
+		if (of->n == 0)
 			continue;
-		k->a_least = smaller(k->a_least, a);
-		k->a_most = larger(k->a_most, a);
-		k->j_least = smaller(k->j_least, j);
-		k->j_most = larger(k->j_most, j);
+		least.a_mm_s2 = smaller(least.a_mm_s2, (double)of->a_mm_s2);
+		least.j_mm_s3 = smaller(least.j_mm_s3, (double)of->j_mm_s3);
+		most.a_mm_s2 = larger(most.a_mm_s2, (double)of->a_mm_s2);
+		most.j_mm_s3 = larger(most.j_mm_s3, (double)of->j_mm_s3);
 	}
+	return most.a_mm_s2 >= PASS_SIDE * least.a_mm_s2 ||
+	       most.j_mm_s3 >= PASS_SIDE * least.j_mm_s3;
 }
 
-/* Where the length of the path passes to other axes, a move may stand. */
-static void stand_at_parts(struct limits *w)
+/* Where the length of the path passes to other axes, a move may stand.  Return:
+ * does it anywhere? */
+static bool stand_at_parts(struct limits *w)
 {
+	bool any = false;
+
 	for (uint32_t i = 1; i < w->pass.end; i++) {
 		if (!w->looks.of[i].ends_part)
 			continue;
 		pass_set_stand(&w->pass, i, true);
-		w->pass.parts = true;
+		any = true;
 	}
+	return any;
 }
 
-static void find_stands(struct limits *w)
+static int find_stands(struct limits *w)
 {
-	note_soft(w);
-	stand_at_parts(w);
-	if (!pass_may_stand(&w->pass))
-		return;
+	int err;
+
+	if (!stand_at_parts(w) && !differ(w))
+		return 0;
 	write_ceilings(w);
-	pass_stretches(&w->pass);
+	err = pass_stands(&w->pass);
 	for (uint32_t i = 1; i < w->pass.end; i++) {
 		w->pass.segs[i].a_mm_s2 = w->looks.of[i].a_mm_s2;
 		w->pass.segs[i].j_mm_s3 = w->looks.of[i].j_mm_s3;
 	}
+	return err;
 }
 
-static void write_all(struct limits *w)
+static int write_all(struct limits *w)
 {
+	int err;
+
 	write_plain(w);
-	find_stands(w);
+	err = find_stands(w);
+	if (err < 0)
+		return err;
 	choose_all(w);
 	pass_levels(&w->pass);
 	pass_hops(&w->pass);
+	return 0;
 }
 
 int interp_limits_write(const struct interp_limits *l,
@@ -326,10 +336,10 @@ int interp_limits_write(const struct interp_limits *l,
 
 	interp_machine_travel(l->machine, &w.pass.travel_a_mm_s2,
 			      &w.pass.travel_j_mm_s3);
-	if (err == 0) {
-		write_all(&w);
+	if (err == 0)
+		err = write_all(&w);
+	if (err == 0)
 		looks_bends(&w.looks, bends);
-	}
 	looks_free(&w.looks);
 	free(w.v2);
 	return err;

@@ -42,7 +42,7 @@
  * with each less than the one before.
  *
  * Where the least of a whole way would take much longer, INTERP_SEG_STAND cuts
- * the way in two (compile/speed/stretch.c).
+ * the way in two (compile/speed/stands.c).
  *
  * Units: in every name.
  */

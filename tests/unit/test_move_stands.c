@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * test_stretch.c - a place where the axes allow little slows down that place,
- * and not the whole move
+ * test_move_stands.c - a place where the axes allow little slows down that
+ * place, and not the whole move
  */
 #include "arc_turn.h"
 #include "axis_track.h"
