@@ -65,6 +65,18 @@ static void print_generator(const struct talk_status *s)
 		printf("           its own fault: %s\n", s->generator_fault);
 }
 
+/* Of a wire. */
+static void print_pass(const struct talk_status *s)
+{
+	if (s->wire_pass)
+		printf("pass       %d of %d, offset %.4f mm\n", s->wire_pass,
+		       s->wire_passes, s->wire_offset_mm);
+	else if (s->wire_offset_mm != 0)
+		printf("offset     %.4f mm to the %s\n",
+		       fabs(s->wire_offset_mm),
+		       s->wire_offset_mm > 0 ? "left" : "right");
+}
+
 static void print_places(const char *work, const char *axes,
 			 const double mm[TALK_NAXES], double turn_deg)
 {
@@ -132,6 +144,7 @@ static void print_text(struct ctl *c, const struct talk_status *s)
 	if (s->hunts > 0)
 		printf("warning    the gap servo hunts; edmctl alarms\n");
 	printf("gap        %.1f V\nfeed       %s\n", s->gap_v, speed);
+	print_pass(s);
 	if (strcmp(s->daemon, "ok") == 0)
 		print_work(c, s);
 	printf("machine at");

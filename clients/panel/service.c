@@ -322,6 +322,9 @@ static void take_status(struct service *a)
 		s->electrode = t->electrode;
 		snprintf(s->work, sizeof(s->work), "%s", t->work);
 		s->work_turn_deg = t->work_turn_deg;
+		s->pass = t->wire_pass;
+		s->passes = t->wire_passes;
+		s->wire_offset_mm = t->wire_offset_mm;
 		memcpy(s->work_mm, t->work_mm, sizeof(s->work_mm));
 		s->lean_deg = t->lean_deg;
 		s->queue_len = t->queue_len;

@@ -38,6 +38,8 @@ struct service_status {
 	int lines, queue_len, hunts;
 	int electrode;			/* in the holder; 0: none */
 	char work[SERVICE_WORD_MAX];	/* system in force: "G54", or "" */
+	int pass, passes;		/* of a wire; 0: none */
+	double wire_offset_mm;
 	double work_turn_deg, work_mm[INTERP_NAXES];
 	double lean_deg;		/* of a wire */
 	double eta_s;			/* -1: there is no estimate */

@@ -234,6 +234,10 @@ static void add_work(json_t *o, const struct service_status *s)
 	json_object_set_new(o, "workTurn",
 			    json_real(round(s->work_turn_deg * 1e4) / 1e4));
 	json_object_set_new(o, "workMm", mm);
+	json_object_set_new(o, "pass", json_integer(s->pass));
+	json_object_set_new(o, "passes", json_integer(s->passes));
+	json_object_set_new(o, "wireOffset",
+			    json_real(round(s->wire_offset_mm * 1e5) / 1e5));
 }
 
 static json_t *state_of(struct panel *p)

@@ -162,6 +162,9 @@ static void fill_work(struct jobs_lcm_status *w, struct jobs *j)
 		return;
 	w->work = offset_name((int)o.work);
 	w->work_turn_deg = o.turn_deg;
+	w->wire_pass = o.pass;
+	w->wire_passes = o.npasses;
+	w->wire_offset_mm = o.wire_mm;
 	offset_place_mm(&o, &j->link.snap, w->work_mm);
 }
 

@@ -93,7 +93,8 @@ static int put(struct jobs *j, const struct jobs_lcm_command *c,
 	err = write_all(beside, text);
 	if (err)
 		snprintf(why, WHY_MAX, "%s: %s; a table in a folder where "
-			 "edmd-jobs may write, as /var/lib/edmd", beside, strerror(-err));
+			 "edmd-jobs may write, as /var/lib/edmd", beside,
+			 strerror(-err));
 	else if (check(j, beside, why) < 0)
 		err = -EINVAL;
 	else if (keep(j, &now, text, c, what))
@@ -101,7 +102,8 @@ static int put(struct jobs *j, const struct jobs_lcm_command *c,
 	else if (rename(beside, now.path) < 0)
 		err = -errno;
 	if (err == -EAGAIN)
-		snprintf(why, WHY_MAX, "the store failed, so nothing was saved");
+		snprintf(why, WHY_MAX, "the store failed, so nothing was "
+			 "saved");
 	else if (err && err != -EINVAL && !*why)
 		snprintf(why, WHY_MAX, "%s: %s", now.path, strerror(-err));
 	if (err)
@@ -178,8 +180,8 @@ static int change(struct interp_tech_table *t, const char *word, uint32_t line,
 	int id;
 
 	if (!row || !word[n] || word[n + 1 + m] != '=')
-		return refuse(why, line, word, "C120.servo_v=30, of a condition "
-			      "of the table, or C120.servo_v=-");
+		return refuse(why, line, word, "C120.servo_v=30, of a "
+			      "condition of the table, or C120.servo_v=-");
 	snprintf(field, sizeof(field), "%.*s", (int)m, word + n + 1);
 	id = interp_tech_find(field);
 	if (id < 0)

@@ -58,6 +58,9 @@
 	WORD(axes) \
 	WORD(work) \
 	NUMBER(work_turn_deg) \
+	COUNT(wire_pass) \
+	COUNT(wire_passes) \
+	NUMBER(wire_offset_mm) \
 	COUNT(hunts) \
 	COUNT(electrode) \
 	NUMBER(electrode_shift_mm) \

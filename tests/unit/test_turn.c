@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* test_turn.c - a work system that is turned, and an electrode beside its
  * middle: where every place of a program is on the machine */
-#include "nc_read.h"
+#include "wire_help.h"
 
 #include "interp/turn.h"
 
@@ -183,6 +183,43 @@ static void each_segment_knows_what_it_counts_from(void **state)
 	nc_done(&n);
 }
 
+/* Each pass of a contour says which one it is, and how far the wire is beside
+ * it; G41 and G42 say it too. */
+static void each_pass_of_a_wire_knows_which_it_is(void **state)
+{
+	static const char text[] = "G90 F180\nH1=0.2 H2=0.15\nH3=0.12\n"
+		"G150 H1 F180\nG150 H2 F300\nG150 H3 F400\n"
+		"G151 P100 X10 Y10\nG152\n"
+		"G42 H1 G1 X20 Y5\nX20 Y15\nG40 X25\nM30\n"
+		"O100\nG41 G1 X10 Y5\nX15\nY15\nX5\nY5\nX10\n"
+		"G40 Y10\nM99\n";
+	static const double wire_mm[] = { 0, 0.2, 0.15, 0.12 };
+	uint32_t passes = 0, last = 0;
+	bool right = false;
+	struct nc_read n = nc_ready();
+
+	(void)state;
+	n.o.wire = &guides;
+	nc_read(&n, text);
+	for (uint32_t i = 1; i + 1 < n.p.head->nsegs; i++) {
+		const struct interp_origin *o = interp_program_origin(&n.p, i);
+
+		assert_true(o && o->pass <= 3);
+		if (o->pass) {
+			assert_int_equal(o->npasses, 3);
+			assert_true(fabs(o->wire_mm - wire_mm[o->pass]) <
+				    1e-9);
+			assert_true(o->pass >= last);
+			last = o->pass;
+			passes |= 1u << o->pass;
+		}
+		right = right || (!o->pass && fabs(o->wire_mm + 0.2) < 1e-9);
+	}
+	assert_int_equal(passes, 0xe);
+	assert_true(right);
+	nc_done(&n);
+}
+
 /* -- The electrode --------------------------------------------------------- */
 
 static struct nc_read beside(const char *text)
@@ -280,6 +317,7 @@ int main(void)
 		cmocka_unit_test(g10_writes_and_turns),
 		cmocka_unit_test(what_cannot_be_turned_is_refused),
 		cmocka_unit_test(each_segment_knows_what_it_counts_from),
+		cmocka_unit_test(each_pass_of_a_wire_knows_which_it_is),
 		cmocka_unit_test(its_middle_stays_over_the_place_as_c_turns),
 		cmocka_unit_test(no_cut_turns_c_with_it),
 		cmocka_unit_test(a_turn_has_its_inverse),

@@ -18,7 +18,7 @@ SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
 JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
-STATUS = bytes.fromhex("78ca3eb2c0da0bec")
+STATUS = bytes.fromhex("3ea8683ad0bd61bc")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -214,6 +214,9 @@ class Status:
     axes: str = ""
     work: str = ""
     work_turn_deg: float = 0.0
+    wire_pass: int = 0
+    wire_passes: int = 0
+    wire_offset_mm: float = 0.0
     work_mm: tuple[float, ...] = ()
     gap_v: float = 0.0
     feed_mm_s: float = 0.0
@@ -286,6 +289,9 @@ class Status:
                 + put.string(self.axes)
                 + put.string(self.work)
                 + put.double(self.work_turn_deg)
+                + put.int32_t(self.wire_pass)
+                + put.int32_t(self.wire_passes)
+                + put.double(self.wire_offset_mm)
                 + b"".join(map(put.double, self.work_mm))
                 + put.double(self.gap_v)
                 + put.double(self.feed_mm_s)
@@ -359,6 +365,9 @@ class Status:
             tuple(r.double() for _ in range(8)),
             r.string(),
             r.string(),
+            r.double(),
+            r.int32_t(),
+            r.int32_t(),
             r.double(),
             tuple(r.double() for _ in range(8)),
             r.double(),

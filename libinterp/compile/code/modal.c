@@ -12,11 +12,20 @@ void nc_set_units(struct nc_reader *r, bool inches)
 			      1 : r->unit_mm;
 }
 
-void nc_set_offset(struct nc_reader *r)
+uint32_t nc_origin(const struct nc_reader *r, uint32_t pass, double wire_mm)
 {
 	struct interp_origin o = {
 		.work = r->work, .turn_deg = r->turn_deg[r->work],
+		.pass = pass, .npasses = pass ? r->passes.npasses : 0,
+		.wire_mm = wire_mm,
 	};
+
+	memcpy(o.mm, r->offset_mm, sizeof(o.mm));
+	return interp_build_origin(r->build, &o);
+}
+
+void nc_set_offset(struct nc_reader *r)
+{
 	double *mm = r->origin_mm;
 
 	nc_electrode_at(r, r->contour.here_mm[INTERP_C], mm);
@@ -33,8 +42,7 @@ void nc_set_offset(struct nc_reader *r)
 		r->offset_mm[INTERP_U] = r->offset_mm[INTERP_X];
 		r->offset_mm[INTERP_V] = r->offset_mm[INTERP_Y];
 	}
-	memcpy(o.mm, r->offset_mm, sizeof(o.mm));
-	r->word.origin = interp_build_origin(r->build, &o);
+	r->word.origin = nc_origin(r, 0, r->contour.offset_mm);
 }
 
 int nc_set_turn(struct nc_reader *r)

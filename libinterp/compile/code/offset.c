@@ -60,6 +60,7 @@ static int set_side(struct nc_reader *r, const uint8_t *at)
 		return refuse_register(r, at);
 	contour_side(&r->contour, r->offset_side * g->mm,
 		     r->taper_side * r->slope);
+	r->word.origin = nc_origin(r, 0, r->contour.offset_mm);
 	return 0;
 }
 

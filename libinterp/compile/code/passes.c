@@ -202,6 +202,9 @@ int nc_cut(struct nc_reader *r)
 	r->word = word;
 	r->selected = selected;
 	r->segs++;
+	for (uint32_t i = 0; i < s->npasses; i++)
+		s->pass[i].word.origin = nc_origin(r, i + 1,
+						   s->pass[i].offset_mm);
 	if (!err)
 		err = nc_cut_passes(r, tape);
 	for (uint32_t i = 0; i < s->ncavities; i++)

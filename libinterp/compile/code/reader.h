@@ -374,6 +374,10 @@ int nc_run_groups(struct nc_reader *r, uint32_t groups);
 void nc_set_units(struct nc_reader *r, bool inches);
 void nc_set_offset(struct nc_reader *r);
 
+/** nc_origin() - for words: where it counts from, in pass @pass (from 1; 0:
+ *  none) with the wire @wire_mm beside its contour. */
+uint32_t nc_origin(const struct nc_reader *r, uint32_t pass, double wire_mm);
+
 /** nc_set_turn() - another work system is in force, or is turned otherwise. */
 int nc_set_turn(struct nc_reader *r);
 

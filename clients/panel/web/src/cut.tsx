@@ -111,7 +111,7 @@ function Sums(): JSX.Element {
 			<div><span>{t("cut.done")}</span><p><b>{number(s.progress * 100, 1)}</b> <u>%</u></p></div>
 			<div><span>{t("cut.left")}</span><p><b>{left()}</b></p></div></div>
 		<TimeNote />
-		<div class="counts">{!isWire() && <span>{t("cut.jumps")} <b>{s.jumps}</b></span>}<span>{t("cut.retracts")} <b>{s.retracts}</b></span>
+		<div class="counts">{s.pass > 0 && <span id="pass">{t("cut.pass")} <b>{s.pass}</b> {t("of")} <b>{s.passes}</b></span>}{isWire() && s.wireOffset !== 0 && <span id="wireoffset">{t("cut.offset")} <b>{number(s.wireOffset, 4)}</b> mm</span>}{!isWire() && <span>{t("cut.jumps")} <b>{s.jumps}</b></span>}<span>{t("cut.retracts")} <b>{s.retracts}</b></span>
 			<span>{t("cut.shorts")} <b>{s.shorts}</b></span><span>{t("cut.time")} <b>{duration(s.jobS)}</b></span>{s.electrode > 0 && <span id="held">{t("cut.electrode")} <b>{s.electrode}</b></span>}</div>
 	</Card>;
 }

@@ -52,7 +52,7 @@
 #define INTERP_FAR_BESIDE	1e4
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	16
+#define INTERP_PROGRAM_VERSION	17
 
 /*
  * How three and more axes make a line when they move one at a time.
@@ -304,6 +304,9 @@ struct interp_origin {
 	uint32_t work;			/* 0: G54 ...; INTERP_ORIGIN_UNTOLD */
 	double turn_deg;		/* + from X toward Y; U V alike */
 	double mm[INTERP_NAXES];
+	uint32_t pass, npasses;		/* of G152: 2 of 3; 0: none of it */
+	double wire_mm;			/* the wire's offset; + is left, and of
+					 * a pass the side is its contour's */
 };
 
 #define INTERP_ORIGINS_MAX	4096u	/* those behind them are not told */
