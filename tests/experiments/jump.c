@@ -356,7 +356,7 @@ static void dense_table(void)
 static void tables(void)
 {
 	printf("# Jumps over dense programs\n\nPrinted by `make experiments`; "
-	       "docs/gap-servo.md says how a jump is planned.\n\nLiang, Kang, "
+	       "docs/speed.md says how a jump is planned.\n\nLiang, Kang, "
 	       "Xu and Zhao (2017) measured what the nodes of a program cost "
 	       "a\ncontroller that stops at each of them in a jump: 84 min "
 	       "with one line, 330 min\nwith a hundred; 106 min with 5 lines, "

@@ -339,7 +339,7 @@ def test_arcs_between_corners_are_no_tighter_beside_these(tmp_path):
     """Windows beside a corner took it for a bend of the path, and the direction
     of one window for the bend of another; the whole way had as little
     acceleration as that left: up to 1.27 times as long.  A twelfth does not
-    get all the stands that whole lines get (docs/gap-servo.md)."""
+    get all the stands that whole lines get (docs/speed.md)."""
     shares = {}
     for seed in range(40):
         rng = random.Random(seed)

@@ -15,8 +15,8 @@
 
 #define WAVES		SEED_ROUNDS(100)
 
-/* Of the jerk, where an axis bends and the path speeds up (docs/gap-servo.md,
- * "Not there yet"): on sines, on smooth steps, and on steps of so few degrees
+/* Of the jerk, where an axis bends and the path speeds up, against the curve
+ * that was meant: on sines, on smooth steps, and on steps of so few degrees
  * that a rounding hides how their bend changes. */
 #define SINE_JERK	1.25
 #define STEP_JERK	1.7
