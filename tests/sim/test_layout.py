@@ -3,6 +3,7 @@
 case, line ends, empty lines.  They go where they go as they are written.  EDM_SEED
 repeats a run, EDM_RUNS says how many layouts of each program.
 """
+import operator
 import os
 import random
 import re
@@ -41,8 +42,9 @@ def way_of(dialect, wire, text):
     rows = r.stdout.decode().splitlines()
     head = rows[0].split(",") if rows else []
     keep = [i for i, h in enumerate(head) if h in "XYZABCUV"]
-    return [[c.split(",")[i] for i in keep] for c in rows[1:]], \
-        r.stderr.decode(), r.returncode
+    places = operator.itemgetter(*keep) if keep else None
+    return [places(c.split(",")) for c in rows[1:]], r.stderr.decode(), \
+        r.returncode
 
 
 WORD = re.compile(r"(\([^)]*\)|;.*|<[^>]*>|[A-Za-z])")
