@@ -12,7 +12,7 @@
 #include "seed.h"
 #include "verbs.h"
 
-#define ROUNDS	60
+#define ROUNDS	SEED_ROUNDS(60)
 
 static uint64_t seed;
 static uint64_t looked[CYCLE_NSTATES];

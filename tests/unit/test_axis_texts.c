@@ -12,7 +12,7 @@
 #include "axis_track.h"
 #include "random_compile.h"
 
-#define RUNS	40
+#define RUNS	SEED_ROUNDS(40)
 #define CYCLES	20000
 
 static uint64_t seed;

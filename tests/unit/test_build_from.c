@@ -16,7 +16,7 @@
 #include "interp/mcode_arg.h"
 #include "path/builder.h"
 
-#define RUNS		150
+#define RUNS		SEED_ROUNDS(150)
 #define POINTS_MAX	400000
 #define AXIS		{ 0.001, -200, 200, 100, 500, 1e5 }
 

@@ -134,7 +134,7 @@ static void a_curve_is_walked_back_by_the_points_it_came(void **state)
 	uint64_t s = seed;
 
 	(void)state;
-	for (uint32_t k = 0; k < ROUNDS; k++) {
+	for (uint32_t k = 0; k < (uint32_t)ROUNDS; k++) {
 		const enum interp_strategy how = strategies[k % 3];
 		const uint32_t first = k % INTERP_NAXES;
 		struct random_curve r;

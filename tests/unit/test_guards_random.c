@@ -13,7 +13,7 @@
 #include "fault.h"
 
 #define CYCLES		4000
-#define RUNS		60
+#define RUNS		SEED_ROUNDS(60)
 #define BRAKES_IN	600		/* cycles, from any speed here */
 
 static uint64_t seed;

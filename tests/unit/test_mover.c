@@ -9,7 +9,7 @@
 #include "path/mover.h"
 #include "seed.h"
 
-#define ROUNDS	20000
+#define ROUNDS	SEED_ROUNDS(20000)
 
 /* Rounding of a sum of thousands of doubles. */
 #define ROUNDING	1e-9

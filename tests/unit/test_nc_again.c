@@ -216,7 +216,7 @@ static void random_lines(void **state)
 		taken += check(text, dialects[any(sizeof(dialects) /
 						  sizeof(*dialects))]);
 	}
-	assert_true(taken > SEED_ROUNDS(3000) / 10);
+	assert_true((int)taken > SEED_ROUNDS(3000) / 10);
 }
 
 /* The end of the text is the end of the line, and nothing behind it is read. */

@@ -10,7 +10,7 @@
 #include "code/number.h"
 #include "seed.h"
 
-#define RUNS	400000
+#define RUNS	SEED_ROUNDS(400000)
 
 static uint64_t seed;
 

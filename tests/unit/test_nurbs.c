@@ -16,7 +16,7 @@
 #include <math.h>
 #include <errno.h>
 
-#define ROUNDS	2000
+#define ROUNDS	SEED_ROUNDS(2000)
 #define ROOM	64
 
 static uint64_t seed;

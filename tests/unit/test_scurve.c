@@ -9,7 +9,7 @@
 #include "interp/scurve.h"
 #include "seed.h"
 
-#define ROUNDS	20000
+#define ROUNDS	SEED_ROUNDS(20000)
 #define SAMPLES	200
 
 #define ROUNDING	1e-9

@@ -157,7 +157,7 @@ static void what_is_read_is_whole_and_never_older(void **state)
 	(void)state;
 	for (size_t count = 2; count <= SLOTS; count *= 2) {
 		row_init(&w, count);
-		w.records = SEED_ROUNDS(2000000);
+		w.records = (uint64_t)SEED_ROUNDS(2000000);
 		for (int i = 0; i < READERS; i++)
 			assert_int_equal(pthread_create(&reader[i], NULL,
 							read_all, &w), 0);

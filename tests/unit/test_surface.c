@@ -11,7 +11,7 @@
 
 #include <errno.h>
 
-#define ROUNDS	500
+#define ROUNDS	SEED_ROUNDS(500)
 #define ROOT	0.70710678118654752440
 
 static uint64_t seed;

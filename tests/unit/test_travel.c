@@ -7,7 +7,7 @@
 #include "cycle_help.h"
 #include "seed.h"
 
-#define ROUNDS	150
+#define ROUNDS	SEED_ROUNDS(150)
 #define SEGS	40
 
 static uint64_t seed;
