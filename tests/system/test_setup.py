@@ -24,7 +24,7 @@ def setup(tmp_path, what="build", **stand_ins):
         (bin_ / name).write_text(f"#!/bin/sh\n{text}\n")
         (bin_ / name).chmod(0o755)
     p = subprocess.run(
-        [ROOT / "tests/setup", what], capture_output=True, text=True,
+        [ROOT / "tests/setup", *what.split()], capture_output=True, text=True,
         env=os.environ | {"PATH": f"{bin_}:/usr/bin:/bin"}, timeout=60)
     return p.returncode, p.stderr.splitlines()
 
@@ -64,3 +64,11 @@ def test_a_node_that_is_too_old_is_told(tmp_path):
     assert got == 69
     (line,) = err
     assert "Node.js 16.20.2" in line and "18 or later" in line, line
+
+
+def test_what_the_page_needs_of_the_network_is_told(tmp_path):
+    got, err = setup(tmp_path, "modules .", npm="echo 'npm ERR! errno "
+                     "EAI_AGAIN' >&2; exit 1")
+    assert got == 69
+    (line,) = err
+    assert "no network" in line and line.endswith("make panel"), line
