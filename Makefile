@@ -414,7 +414,7 @@ $(B)/web/node_modules.stamp: $(WEB)/package.json $(WEB)/package-lock.json
 	$(call say,NPM,$(WEB))
 	$(Q)mkdir -p $(B)/web
 	$(Q)cp $(WEB)/package.json $(WEB)/package-lock.json $(WEB)/.npmrc $(B)/web
-	$(Q)cd $(B)/web && npm ci --loglevel=error >/dev/null
+	$(Q)tests/setup modules $(B)/web
 	$(Q)touch $@
 
 $(B)/panel.stamp: $(B)/web/node_modules.stamp $(WEB_SRC) $(B)/edm-panel
@@ -445,45 +445,51 @@ demo-plan:
 	@$(MAKE) --no-print-directory $(B)/edm-plan $(B)/edmsim
 	@EDM_BUILD=$(B) examples/demo-plan
 
-# Everything: ends with the test runner's own lines.  Random tests have a seed
-# here, so that what fails has been changed; `make invariants`, `make fuzz` and
-# the tests run alone go on to look with others.
+# Everything: ends with how many tests passed.  Random tests have a seed here, so
+# that what fails has been changed, and fewer rounds of it; `make run-units`, `make
+# invariants`, `make fuzz` and the tests run alone go on to look with others.
 check:
 	@tests/stage check setup
 	@tests/setup check
 	@tests/stage check build
-	@$(MAKE) --no-print-directory -j2 all units WERROR=1
+	@$(MAKE) --no-print-directory -j$(SIDE) all units panel vm \
+		$(B)/bench/count WERROR=1
 	@tests/stage check lint
-	@$(MAKE) --no-print-directory lint
+	@$(MAKE) --no-print-directory -j$(SIDE) lint
 	@tests/stage check units
-	@EDM_SEED=1 $(MAKE) --no-print-directory run-units
-	@tests/stage check count
-	@$(MAKE) --no-print-directory run-count
-	@tests/stage check san
-	@$(MAKE) --no-print-directory -j2 SAN=1 all units
-	@tests/stage check run-san
-	@EDM_SEED=2 $(MAKE) --no-print-directory SAN=1 run-units
-	@tests/stage check tsan
-	@$(MAKE) --no-print-directory TSAN=1 run-crossings
-	@tests/stage check fuzz
-	@$(MAKE) --no-print-directory -j$(SIDE) fuzz FUZZ_SEED=1 \
-		FUZZ_RUNS=160000 FUZZ_S=40
-	@tests/stage check clang
-	@$(MAKE) --no-print-directory clang
-	@tests/stage check vm
-	@$(MAKE) --no-print-directory vm
-	@tests/stage check panel
-	@$(MAKE) --no-print-directory panel
-	@tests/stage check tests
-	@EDM_BUILD=$(B) EDM_SEED=1 $(NETNS) .venv/bin/pytest -q $(PANEL_TESTS)
-	@EDM_BUILD=$(B) EDM_SEED=1 $(NETNS) .venv/bin/pytest -q \
-		-n $(PYTEST_SIDE) --dist loadfile --no-loadscope-reorder \
-		$(VM_TESTS) tests/system tests/sim $(PANEL_TESTS:%=--ignore %)
+	@EDM_SEED=1 EDM_SHARE=4 $(MAKE) --no-print-directory \
+		-j$(SIDE) run-units
+	@tests/stage check beside
+	@rm -f $(COUNTS)
+	@$(MAKE) --no-print-directory -j$$(($(SIDE) + 1)) $(BESIDE:%=beside-%)
+	@tests/stage check page
+	@$(PYTEST) $(PANEL_TESTS)
+	@tests/stage check end $(COUNTS)
 
-# Processes of pytest: a whole file belongs to one of them, and each has a network of
-# its own (tests/conftest.py).  Files that take longest begin first.  They wait more
-# than they compute, so they are twice as many as those that compute.
-PYTEST_SIDE ?= $(shell echo $$((2 * $(SIDE))))
+# The tests of the daemons wait: each takes a tenth of a core.  So they run beside
+# all that computes, which has a core for each job.
+BESIDE	= system vm sim san tsan count fuzz clang
+COUNTS	= $(B)/check.counts
+PYTEST	= MAKEFLAGS= EDM_BUILD=$(B) EDM_SEED=1 EDM_COUNTS=$(COUNTS) $(NETNS) \
+	  .venv/bin/pytest -q
+
+# Several processes of pytest: a whole file belongs to one of them, and each has a
+# network of its own (tests/conftest.py).
+beside-system:
+	@$(PYTEST) -n $$((2 * $(SIDE))) --dist loadfile --no-loadscope-reorder \
+		$(SYSTEM_TESTS)
+beside-sim:
+	@$(PYTEST) tests/sim
+beside-vm:
+	@$(PYTEST) $(VM_TESTS)
+beside-san:
+	@EDM_SEED=2 EDM_SHARE=2 $(MAKE) --no-print-directory SAN=1 run-units
+beside-tsan:
+	@$(MAKE) --no-print-directory TSAN=1 run-crossings
+beside-fuzz:
+	@$(MAKE) --no-print-directory fuzz FUZZ_SEED=1 FUZZ_RUNS=50000 FUZZ_S=20
+beside-count: run-count
+beside-clang: clang
 
 # Of the virtual machine's tests those that were seen to pass again and again, some
 # 8 minutes.  The others, encoder and adc among them, are in `make check-vm`.
@@ -493,9 +499,12 @@ VM_TESTS = $(patsubst %,tests/vm/test_%.py,plain systemd can402 torture)
 # alone: a browser needs both cores at times.
 PANEL_TESTS = $(wildcard tests/system/test_panel*.py)
 
+SYSTEM_TESTS = tests/system $(PANEL_TESTS:%=--ignore %)
+
 # For somebody who changes code: most of what goes wrong, in 90 s.
 SLOW_UNITS = arcs cycle_random limits identify contouring taper \
 	     contour_random curve scurve
+SLOW_X	= $(SLOW_UNITS:%=$(B)/unit/test_%)
 
 quick:
 	@tests/stage quick build
@@ -504,8 +513,8 @@ quick:
 	@tests/stage quick lint
 	@$(MAKE) --no-print-directory lint
 	@tests/stage quick units
-	@EDM_SEED=1 $(MAKE) --no-print-directory run-units \
-		UNIT_X="$(filter-out $(SLOW_UNITS:%=$(B)/unit/test_%),$(UNIT_X))"
+	@EDM_SEED=1 EDM_SHARE=4 $(MAKE) --no-print-directory \
+		-j$(SIDE) run-units UNIT_X="$(filter-out $(SLOW_X),$(UNIT_X))"
 	@tests/stage quick tests
 	@EDM_BUILD=$(B) $(NETNS) .venv/bin/pytest -q tests/system/test_erode.py
 
@@ -549,8 +558,12 @@ $(B)/loopback.so: tests/loopback.c
 	$(Q)$(call whole,$(CC) -std=gnu11 -D_GNU_SOURCE -O2 $(WARN) -shared \
 		-fPIC $< -o)
 
-run-units: $(UNIT_X) $(PEER_X)
-	$(Q)printf '%s\n' $^ | xargs -P $(SIDE) -n 1 tests/one-unit
+# Those that take longest begin first.
+run-units: $(addsuffix .run,$(filter $(SLOW_X),$(UNIT_X)) \
+	   $(filter-out $(SLOW_X),$(UNIT_X)) $(PEER_X))
+
+$(B)/%.run: $(B)/%
+	$(Q)tests/one-unit $<
 
 # 500 kills of edmd, edmd-jobs and both around every verb: half an hour.
 KILLS ?= 500
@@ -621,20 +634,22 @@ walkable: $(B)/unit/test_walkable
 	$(Q)EDM_RUNS=$(RUNS) $(if $(SEED),EDM_SEED=$(SEED)) $<
 
 # What threads share, under the thread sanitizer.
-run-crossings: $(filter $(B)/unit/test_shm% $(B)/unit/test_stamped,$(UNIT_X))
-	$(Q)printf '%s\n' $^ | xargs -n 1 tests/one-unit
+run-crossings: $(addsuffix .run,$(filter $(B)/unit/test_shm% $(B)/unit/test_stamped,\
+	       $(UNIT_X)))
 
 # Another compiler's opinion: warnings are errors, nothing is linked.  A line of an
 # axis is "LINE_STEP + axis": two enums, and meant.
-clang:
-	$(call say,CLANG,all sources)
-	$(Q)printf '%s\n' $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) \
-		$(VALUES) $(SHM) $(SETUP) $(EDMD) $(JOBS) $(SIM) $(CTL) $(PLOT) \
-		$(PANEL_C) $(PLAN) $(wildcard clients/dds/*.c) | \
-		xargs -P $(SIDE) -n 8 clang -fsyntax-only -Werror $(filter-out -g,$(CFLAGS)) \
-			-Wno-enum-enum-conversion \
-			$(sort $(INC_edmd) $(INC_io) $(INC_jobs) $(INC_sim) $(INC_ctl) \
-			$(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp))
+CLANGED = $(COMMON) $(INTERP) $(RT) $(IO) $(CONFIG) $(COMPILING) $(VALUES) $(SHM) \
+	  $(SETUP) $(EDMD) $(JOBS) $(SIM) $(CTL) $(PLOT) $(PANEL_C) $(PLAN) \
+	  $(wildcard clients/dds/*.c)
+clang: $(CLANGED:%=%.clang)
+
+%.clang: %
+	$(call say,CLANG,$<)
+	$(Q)clang -fsyntax-only -Werror $(filter-out -g,$(CFLAGS)) \
+		-Wno-enum-enum-conversion $(sort $(INC_edmd) $(INC_io) $(INC_jobs) \
+		$(INC_sim) $(INC_ctl) $(INC_dds) $(INC_panel) $(INC_plan) \
+		$(INC_libinterp)) $<
 
 bench-plan:
 	@$(MAKE) --no-print-directory $(B)/edm-plan $(B)/bench/plan
@@ -782,7 +797,12 @@ NOT_IN_EDMD = nc_|interp_nc_|interp_build_|interp_threeb_|interp_tech_read|lcm_|
 # Files of the cycle that call each other in a circle, at most.
 CIRCLE_MOST = 3
 
-lint: $(PROGRAMS) $(CORE_A) $(RT_O)
+%.alone: %
+	$(Q)$(CC) $(filter-out -g,$(CFLAGS)) -Werror -fsyntax-only \
+		$(sort $(INC_edmd) $(INC_jobs) $(INC_sim) $(INC_ctl) $(INC_dds) \
+		$(INC_panel) $(INC_plan) $(INC_libinterp)) -x c $<
+
+lint: $(PROGRAMS) $(CORE_A) $(RT_O) $(HEADERS:%=%.alone)
 	$(call say,LINT,what the cycle may call)
 	$(Q)$(LD) -r -o $(B)/rt.o $(RT_O) --whole-archive $(CORE_A)
 	$(Q)objcopy -w -R '.gnu.lto_*' -R '.gnu.debuglto_*' $(B)/rt.o
@@ -800,10 +820,6 @@ lint: $(PROGRAMS) $(CORE_A) $(RT_O)
 	$(Q)tests/callgraph --most $(CIRCLE_MOST) $(RT_O)
 	$(call say,LINT,no two headers of one name)
 	$(Q)! printf '%s\n' $(notdir $(HEADERS)) | sort | uniq -d | grep .
-	$(call say,LINT,each header alone)
-	$(Q)for h in $(HEADERS); do $(CC) $(filter-out -g,$(CFLAGS)) \
-		-Werror -fsyntax-only $(sort $(INC_edmd) $(INC_jobs) $(INC_sim) \
-		$(INC_ctl) $(INC_dds) $(INC_panel) $(INC_plan) $(INC_libinterp)) -x c $$h || exit 1; done
 	$(call say,LINT,generated messages stay in their files)
 	$(Q)! grep -ln '#include.*edm_.*_t\.h' daemon/*/*.c clients/*/*.c | \
 		grep -vE 'daemon/jobs/lcm.c|clients/client/packet.c'

@@ -108,6 +108,8 @@ def strange_files():
 
 def pytest_sessionstart(session):
     session.strange_before = set() if WORKER else strange_files()
+    if COUNTS:
+        session.config.pluginmanager.register(Lines(session))
 
 
 def pytest_sessionfinish(session):
@@ -120,7 +122,46 @@ def pytest_sessionfinish(session):
 
 def pytest_terminal_summary(terminalreporter):
     """The reasons, each with how many tests it kept from running."""
-    skipped = terminalreporter.stats.get("skipped", [])
-    for reason, n in sorted(collections.Counter(
-            r.longrepr[2].removeprefix("Skipped: ") for r in skipped).items()):
+    skipped = collections.Counter(
+        r.longrepr[2].removeprefix("Skipped: ")
+        for r in terminalreporter.stats.get("skipped", []))
+    for reason, n in sorted(skipped.items()):
         terminalreporter.write_line(f"skipped {n}: {reason}")
+    if COUNTS:
+        with open(COUNTS, "a", encoding="utf-8") as f:
+            print("passed", len(terminalreporter.stats.get("passed", [])),
+                  sep="\t", file=f)
+            for reason, n in skipped.items():
+                print("skipped", n, reason, sep="\t", file=f)
+
+
+# -- Beside others, as in `make check`: lines in place of dots
+
+COUNTS = "" if WORKER else os.environ.get("EDM_COUNTS", "")
+
+
+def pytest_report_teststatus(report):
+    if not COUNTS:
+        return None
+    if report.when == "call" or report.skipped:
+        return report.outcome, "", ""
+    return "error" if report.failed else "", "", ""
+
+
+class Lines:
+    """How many tests of how many have ended, each tenth of them; and at once
+    each that failed."""
+
+    def __init__(self, session):
+        self.session, self.ended, self.told = session, 0, 0
+
+    def pytest_runtest_logreport(self, report):
+        if report.failed:
+            print(f"  FAILED  {report.nodeid}", flush=True)
+        self.ended += report.when == "teardown"
+        tenth = 10 * self.ended // max(self.session.testscollected, 1)
+        if tenth > self.told:
+            self.told = tenth
+            folder = os.path.dirname(report.fspath)
+            print(f"  TESTS   {folder}: {self.ended} of "
+                  f"{self.session.testscollected}", flush=True)
