@@ -436,6 +436,7 @@ PORT	?= 7680
 
 demo:
 	@tests/setup build
+	@$(if $(filter 1,$(PANEL)),tests/setup panel)
 	@$(MAKE) --no-print-directory all $(if $(filter 1,$(PANEL)),panel)
 	@EDM_BUILD=$(B) PORT=$(PORT) \
 		$(if $(filter 1,$(PANEL)),examples/demo-panel,tests/netns examples/demo)
