@@ -437,7 +437,8 @@ PORT	?= 7680
 demo:
 	@tests/setup build
 	@$(if $(filter 1,$(PANEL)),tests/setup panel)
-	@$(MAKE) --no-print-directory all $(if $(filter 1,$(PANEL)),panel)
+	@$(MAKE) --no-print-directory all $(if $(filter 1,$(PANEL)),panel) || \
+		tests/setup failed
 	@EDM_BUILD=$(B) PORT=$(PORT) \
 		$(if $(filter 1,$(PANEL)),examples/demo-panel,tests/netns examples/demo)
 
@@ -454,7 +455,7 @@ check:
 	@tests/setup check
 	@tests/stage check build
 	@$(MAKE) --no-print-directory -j$(SIDE) all units panel vm \
-		$(B)/bench/count WERROR=1
+		$(B)/bench/count WERROR=1 || tests/setup failed
 	@tests/stage check lint
 	@$(MAKE) --no-print-directory -j$(SIDE) lint
 	@tests/stage check units

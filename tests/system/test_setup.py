@@ -72,3 +72,16 @@ def test_what_the_page_needs_of_the_network_is_told(tmp_path):
     assert got == 69
     (line,) = err
     assert "no network" in line and line.endswith("make panel"), line
+
+
+def test_a_make_that_failed_on_a_full_disk_is_told_so(tmp_path):
+    full = ("echo Filesystem 1024-blocks Used Available Capacity Mounted; "
+            "echo x 90000 82000 8000 91% /var/full")
+    got, err = setup(tmp_path, "failed", df=full)
+    assert got == 73
+    (line,) = err
+    assert "the disk is full, at /var/full only 7 MiB are free" in line
+    (tmp_path / "more").mkdir()
+    got, err = setup(tmp_path / "more", "failed",
+                     df=full.replace(" 8000 ", " 80000 "))
+    assert (got, err) == (1, [])
