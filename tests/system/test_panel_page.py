@@ -379,6 +379,47 @@ def test_the_table_of_electrodes_is_kept_here(p, page):
     assert electrode(p, 3) is None
 
 
+def test_technology_is_saved_on_the_host_and_comes_back(p, page):
+    file = p.folder / "copper-steel.tech"
+    was = file.read_text()
+    show(page, "tech")
+    cell = page.get_by_label("C120 servo_v")
+    before = cell.input_value()
+    cell.fill("31")
+    cell.press("Enter")
+    press(page.locator("#techsave"))
+    versions = page.locator(".versions li")
+    expect(versions).to_have_count(2)
+    expect(versions.first).to_contain_text("C120.servo_v=31")
+    expect(cell).to_have_value("31")
+    assert file.read_text() != was
+    press(versions.nth(1).get_by_role("button", name="Take version 1 back"))
+    expect(versions).to_have_count(3)
+    expect(cell).to_have_value(before)
+    assert file.read_text() == was
+
+
+def test_the_lie_of_the_work_is_a_form(p, page):
+    end_job(page, p)
+    show(page, "setup")
+    page.get_by_role("radio", name="Lie of the work").click()
+    form = page.locator(".probe")
+    expect(form.locator(".felt")).to_contain_text("Turn")
+    expect(form.locator(".felt")).to_contain_text("0.0000\u00b0")
+    # Along which axis is asked for a face above alone; nothing is cut off.
+    expect(form.get_by_text("Along", exact=True)).to_have_count(0)
+    form.get_by_role("radio", name="Z\u2212").click()
+    expect(form.get_by_text("Along", exact=True)).to_be_visible()
+    for choice in page.locator(".probing .choice").all():
+        assert choice.evaluate("e => e.scrollWidth <= e.clientWidth")
+    expect(form.locator(".felt")).to_contain_text("Rises along X")
+    page.get_by_role("radio", name="Middle of the electrode").click()
+    expect(form.locator(".drawing")).to_be_visible()
+    # Without an electrode of the table there is nothing to give it to.
+    expect(page.locator("#probe-run")).to_have_attribute("aria-disabled",
+                                                         "true")
+
+
 def offset(p, work):
     rows = json.loads(p.machine.ctl("offset", "--json").stdout)
     return next(r for r in rows if r["work"] == work)

@@ -7,7 +7,7 @@ import type { Word } from "./words";
 
 export type ProbeId = "edge" | "hole" | "block" | "corner" | "skew" | "length" | "middle" | "straight";
 
-export interface Ask { key: string; label: Word; unit: string; preset: string; may?: boolean; choices?: string[] }
+export interface Ask { key: string; label: Word; unit: string; preset: string; may?: boolean; choices?: string[]; when?: (v: Values) => boolean }
 
 /** `shows`: the values that it changes, by their keys in a row of the offsets, or,
  * if `electrode`, in one of the electrodes. */
@@ -57,7 +57,7 @@ export const PROBES: Probe[] = [
 	shows: () => ["X", "Y"],
 	words: (v) => ["corner", `X${v.wayX}`, `Y${v.wayY}`, ...word(v, "x", "I"), ...word(v, "y", "J"), ...word(v, "off", "Q"), ...zeros(v), ...walls(v)] },
 	{ id: "skew", asks: [{ key: "face", label: "probe.face.along", unit: "", preset: "Y+", choices: ["X+", "X-", "Y+", "Y-", "Z-"] },
-		{ key: "line", label: "probe.line", unit: "", preset: "X", choices: ["X", "Y"] }, number("along", "probe.along", "20"), number("far", "probe.far", "10")],
+		{ key: "line", label: "probe.line", unit: "", preset: "X", choices: ["X", "Y"], when: (v) => v.face === "Z-" }, number("along", "probe.along", "20"), number("far", "probe.far", "10")],
 	shows: (v) => v.face === "Z-" ? [v.line === "Y" ? "tilt_y_deg" : "tilt_x_deg"] : ["turn_deg", "C"],
 	words: skew },
 	{ id: "length", asks: [number("far", "probe.far", "10"), { key: "zero", label: "probe.face", unit: "Z mm", preset: "0" },

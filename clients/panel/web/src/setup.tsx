@@ -160,7 +160,7 @@ function ProbeForm(p: { probe: Probe }): JSX.Element {
 	};
 	return <div class="probe"><div class="probe-top"><Drawing id={p.probe.id} v={v} /><p>{t(`probe.${p.probe.id}.about`)}</p></div>
 		{!own && <div class="field"><span>{t("touch.into")}</span><Choice label={t("touch.into")} value={work} onChange={(w) => { into(w); feel(null); }} of={WORKS.map((w) => ({ value: w, text: w }))} /></div>}
-		<div class="fields">{p.probe.asks.map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.map((c) => ({ value: c, text: c === "new" || c === "worn" ? t(`touch.${c}`) : c.replace("-", "\u2212") }))} /></label> :
+		<div class="fields">{p.probe.asks.filter((a) => !a.when || a.when(v)).map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice class="wrap" label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.map((c) => ({ value: c, text: c === "new" || c === "worn" ? t(`touch.${c}`) : c.replace("-", "\u2212") }))} /></label> :
 			<NumberField key={a.key} label={a.may ? `${t(a.label)} (${t("probe.nozero")})` : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
 		<Changes target={target} felt={felt} state={state} now={now} />
 		<p class="note">{t("probe.warn")}</p>
@@ -172,7 +172,7 @@ function ProbeCard(): JSX.Element {
 	const [at, set] = useState<ProbeId>("edge");
 	const probe = PROBES.find((x) => x.id === at) as Probe;
 	return <Card title={t("setup.probe")} class="probing">
-		<Choice label={t("setup.probe")} value={at} onChange={set} of={PROBES.map((x) => ({ value: x.id, text: t(`probe.${x.id}`) }))} />
+		<Choice class="wrap" label={t("setup.probe")} value={at} onChange={set} of={PROBES.map((x) => ({ value: x.id, text: t(`probe.${x.id}`) }))} />
 		<ProbeForm probe={probe} key={at} /></Card>;
 }
 
