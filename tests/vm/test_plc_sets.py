@@ -5,9 +5,10 @@ The line that allows sparks is traced by the kernel, and the PLC writes down whe
 its generator changed.
 """
 import json
+import re
 
 import pytest
-from boot import GAP, HERE, ROOT, SLOW_JOB, Run, checked, machine
+from boot import GAP, GENERATOR, HERE, ROOT, SLOW_JOB, Run, checked, machine
 
 PERIOD_S = 0.005
 
@@ -21,6 +22,20 @@ polarity_ms = 50
 fault_words = 3 no cooling water
 [tech]
 table = paper.tech
+"""
+
+# A generator on the same bus instead, which tells what it has.
+CAN = GAP.replace("pump = 7\n", "") + """
+[generator]
+interface = can
+can_interface = vcan1
+can_id = 1009
+ignition_v = can 1010 byte 0
+told_peak_a = can 1011 byte 0 scale 0.1
+told_on_us = can 1011 byte 2 scale 0.1
+told_off_us = can 1011 byte 4 scale 0.1
+told_ignition_v = can 1011 byte 6
+confirm_s = 0.5
 """
 
 # C200 as published; the others differ in all, and in the polarity alone.
@@ -42,6 +57,9 @@ def run():
         "sets.ini": machine(tail=SETS),
         "paper.tech": PAPER, "paper.ngc": PAPER_JOB,
         "slow.ngc": SLOW_JOB.replace("G90", "G90 T84 C200"),
+        "can.ini": machine(tail=CAN), "stuck.ini": machine(tail=CAN),
+        "lines.ini": machine(tail=GENERATOR.split("[tech]")[0]),
+        "can_generator.py": (HERE / "guest/can_generator.py").read_text(),
         "edmd.eds": (ROOT / "messages/edmd.eds").read_text(),
         "plc_sets.py": (HERE / "guest/plc_sets.py").read_text(),
     }, "-d"))
@@ -134,3 +152,26 @@ def test_no_spark_of_an_ill_one_has_another_condition(run):
     assert s["offences"] == []
     for begin, _ in sparks(run, "ill"):
         assert values_at(s, begin) == COUNTS["C200"]
+
+
+@pytest.mark.parametrize("name", ["sets", "can"])
+def test_a_walk_goes_through_the_steps_of_each_field(run, name):
+    text = run.text(f"walk-{name}.txt")
+    assert run.text(f"walk-{name}.rc") == "0\n", text + run.text(f"walk-{name}.log")
+    steps, of = map(int, re.search(r"(\d+) of (\d+) steps", text).groups())
+    assert steps == of > 20, text
+    assert " 0 not told as asked; all is as it was before" in text
+
+
+def test_a_walk_finds_a_bit_that_does_not_turn(run):
+    """Bit 6 of the peak current."""
+    text = run.text("walk-stuck.txt")
+    odd = re.findall(r"^(\w+) ([\d.]+) \w+: asked", text, re.M)
+    assert odd and all(f == "peak_a" and round(10 * float(v)) & 64
+                       for f, v in odd), text
+    assert run.text("walk-stuck.rc") != "0\n"
+
+
+def test_lines_tell_nothing_that_a_walk_could_compare(run):
+    assert run.text("walk-lines.rc") == "78\n", run.text("walk-lines.txt")
+    assert "told_peak_a" in run.text("walk-lines.txt")

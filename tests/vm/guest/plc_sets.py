@@ -6,7 +6,7 @@ knows edmd by messages/edmd.eds and the generator by its own model, which needs
 30 ms for a change.  What edmd must not do it writes down as offences.  Prints
 JSON: times are of CLOCK_MONOTONIC, as those of the kernel's trace.
 
-Scenes: good (until the job is done), or what a PLC or its generator does to a cut:
+Scenes: idle (no job, until it is killed), good (until the job is done), or what a PLC or its generator does to a cut:
 late, lies, refuses, silent, resets.
 """
 import json
@@ -207,6 +207,8 @@ def main():
     interface, *scenes = sys.argv[1:]
     plc = Plc(interface)
     try:
+        if scenes == ["idle"]:          # until it is killed
+            plc.scan_for(3600)
         plc.until(lambda p: p.frames["Flags"] >> 6 & 1)     # loaded
         if scenes[0] == "late":
             plc.begin_late()

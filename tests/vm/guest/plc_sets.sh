@@ -4,7 +4,7 @@
 . ./lib.sh
 ip link add dev vcan1 type vcan
 ip link set vcan1 up
-cp paper.tech plc_sets.py edmd.eds $R/
+cp paper.tech plc_sets.py can_generator.py edmd.eds $R/
 cd $R
 
 scenes() {	# NAME JOB SCENE ...
@@ -23,7 +23,29 @@ scenes() {	# NAME JOB SCENE ...
 	cp $name.* $J/
 }
 
+is_told() { ctl generator | grep -q '^peak_a  *A  *[a-z]*  *-  *[0-9]'; }
+
+# Through the steps of each field, with WHO to answer; `true`: nobody.
+walk() {	# NAME EVERY WHO ...
+	name=$1 every=$2; shift 2
+	edmd_start $R/edmd $name.ini
+	jobs_start $name.ini
+	"$@" 2> who.err & who=$!
+	[ $1 = true ] || turns 100 is_told
+	ctl generator walk --every $every > walk-$name.txt 2>&1
+	echo $? > walk-$name.rc
+	kill $who; wait $who
+	cat who.err >> walk-$name.txt
+	daemons_end walk-$name
+	rm -f /dev/shm/edmd.vm.*
+	cp walk-$name.* $J/
+}
+
 J=$OLDPWD
+walk sets 9973 $PYTHON plc_sets.py vcan1 idle
+walk can 9973 $PYTHON can_generator.py vcan1 0
+walk stuck 9973 $PYTHON can_generator.py vcan1 64
+walk lines 1 true
 pull sim0 20 up		# the gap stays open
 scenes good paper.ngc good
 scenes ill slow.ngc late lies refuses silent resets
