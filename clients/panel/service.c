@@ -316,6 +316,7 @@ static void take_status(struct service *a)
 		snprintf(s->interrupted, sizeof(s->interrupted), "%s",
 			 t->interrupted);
 		snprintf(s->lost, sizeof(s->lost), "%s", t->lost);
+		snprintf(s->asks, sizeof(s->asks), "%s", t->asks);
 		snprintf(s->faults, sizeof(s->faults), "%s", t->faults);
 		s->hunts = t->hunts;
 		s->lines = t->lines;

@@ -21,7 +21,7 @@
 #include <stdint.h>
 
 #define SERVICE_WORD_MAX	64
-#define SERVICE_FAULTS_MAX	512
+#define SERVICE_TEXT_MAX	512
 #define SERVICE_ONCE	0x01u	/* send it once: a late one would be useless */
 
 struct service;
@@ -32,9 +32,10 @@ struct service_status {
 	char job[SERVICE_WORD_MAX], job_name[SERVICE_WORD_MAX];
 	char job_state[SERVICE_WORD_MAX];
 	char store[SERVICE_WORD_MAX];	/* "ok", or "degraded: " and why */
+	char asks[SERVICE_TEXT_MAX];	/* why it stands, in words */
 	char interrupted[SERVICE_WORD_MAX];	/* id of such a job, or "" */
 	char lost[SERVICE_WORD_MAX];	/* axes whose place is not certain */
-	char faults[SERVICE_FAULTS_MAX];	/* all that are latched */
+	char faults[SERVICE_TEXT_MAX];	/* all that are latched */
 	int lines, queue_len, hunts;
 	int electrode;			/* in the holder; 0: none */
 	char work[SERVICE_WORD_MAX];	/* system in force: "G54", or "" */

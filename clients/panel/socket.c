@@ -253,6 +253,7 @@ static json_t *state_of(struct panel *p)
 	json_object_set_new(o, "store", json_string(s->store));
 	json_object_set_new(o, "interrupted", json_string(s->interrupted));
 	json_object_set_new(o, "lost", json_string(s->lost));
+	json_object_set_new(o, "asksFor", json_string(s->asks));
 	json_object_set_new(o, "faults", json_string(s->faults));
 	json_object_set_new(o, "hunts", json_integer(s->hunts));
 	json_object_set_new(o, "lines", json_integer(s->lines));

@@ -415,6 +415,7 @@ static const struct verb verbs[] = {
 	{ "electrode-measure", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
 	{ "electrodes", ROLE_VIEWER, run_ask, NULL, VERBS_ASK, NUMBER },
 	{ "offset",   ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, LINES },
+	{ "mdi",      ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, LINES },
 	{ "tech-set", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, LINES },
 	{ "tech-back", ROLE_OPERATOR, run_ask, NULL, VERBS_ACT, NUMBER },
 	{ "tech-versions", ROLE_VIEWER, run_ask, NULL, VERBS_ASK, 0 },

@@ -143,7 +143,7 @@ def test_a_part_from_its_error_to_the_history(p, page):
     expect(page.locator(".jobs").last).to_contain_text("part.ngc")
     page.locator(".jobs").last.locator(".job").first.click()
     expect(page.locator("dialog #conditions")).to_contain_text("C120")
-    expect(page.locator("dialog #jobfaults tr")).to_have_count(1)
+    expect(page.locator("dialog #jobfaults tbody tr")).to_have_count(1)
     expect(page.locator("dialog")).to_contain_text("kJ")
     page.keyboard.press("Escape")
     with page.expect_download() as saved:
@@ -268,6 +268,39 @@ def test_axe_finds_nothing_serious(p, page):
         look(("sheet", theme), rules)
         page.keyboard.press("Escape")
     assert found == []
+
+
+# Where the keyboard is, and whether that can be seen.
+FOCUSED = """() => {
+    const e = document.activeElement;
+    if (e === document.body || !document.querySelector("main").contains(e))
+        return null;
+    window.seen = window.seen ?? new Set();
+    window.seen.add(e);
+    const shown = [e, e.closest(".box"), e.closest(".editor")].some((b) => b &&
+        getComputedStyle(b).outlineStyle !== "none" &&
+        parseFloat(getComputedStyle(b).outlineWidth) >= 2);
+    return shown ? "" : e.outerHTML.slice(0, 120);
+}"""
+UNSEEN = """() => [...document.querySelectorAll(
+    "main button, main input, main select, main textarea")].filter((e) =>
+        e.getBoundingClientRect().width > 0 && e.tabIndex >= 0 &&
+        !window.seen?.has(e)).map((e) => e.outerHTML.slice(0, 120))"""
+
+
+def test_the_keyboard_reaches_every_key_and_shows_where_it_is(p, page):
+    # Of the table of the page Technology each cell is one.
+    for name in (n for n in PAGES if n != "tech"):
+        show(page, name)
+        page.evaluate("window.seen = new Set(); "
+                      "document.querySelector('main').focus()")
+        for _ in range(120):
+            page.keyboard.press("Tab")
+            where = page.evaluate(FOCUSED)
+            if where is None:
+                break
+            assert where == "", (name, where)
+        assert page.evaluate(UNSEEN) == [], name
 
 
 # What no scrolling sideways can reach, or lies under another key.
@@ -684,7 +717,8 @@ def test_the_page_says_what_it_stands_for_and_takes_the_answer(p, page):
     client.job_where("change", "ready", 20)
     press(page.locator("#start"))
     why = page.locator(".head .state p")
-    expect(why).to_have_text("Put electrode 3 in; 1 is in. Then confirm it.")
+    expect(why).to_have_text("Put electrode 3 (e3) in; 1 (e1) is in. Then "
+                             "confirm it.")
     expect(page.locator("#start")).to_have_attribute("aria-disabled", "true")
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
@@ -694,11 +728,11 @@ def test_the_page_says_what_it_stands_for_and_takes_the_answer(p, page):
         assert why.evaluate("e => e.scrollWidth <= e.clientWidth + 1")
         shot(page, f"electrode-{width}")
     press(page.locator("#done"))
-    expect(why).to_have_text("Electrode 3 is in. Go on.")
+    expect(why).to_have_text("Electrode 3 (e3) is in. Go on.")
     expect(page.locator("#done")).to_have_count(0)
     press(page.locator("#start"))
-    expect(why).to_have_text("The program stops in line 5. Go on when you are "
-                             "ready.")
+    expect(why).to_have_text("The program stops in line 5: look at it. Go on "
+                             "when you are ready.")
     shot(page, "stop-390")
     press(page.locator("#start"))
     client.job_where("change", "done", 30)

@@ -8,7 +8,13 @@ import { link } from "./link";
 import { Card, Key, PressKey, act } from "./parts";
 import { hasWarning, storeWhy } from "./stateline";
 import { useAsk } from "./use";
-import { faultWords, huntingWords, t } from "./words";
+import { faultWords, huntingWords, isWord, list, said, t } from "./words";
+
+/* What it was: a fault by its name, all else by its kind. */
+function kindWord(a: Alarm): string {
+	const word = `event.${a.kind}`;
+	return a.kind === "alarm" ? faultWords(a.fault).what : isWord(word) ? t(word) : a.kind;
+}
 
 interface Alarm { utime: number; kind: string; job: string; fault: string; place_mm: number; text: string }
 
@@ -19,7 +25,7 @@ function Now(): JSX.Element {
 	return <Card title={t("alarms.now")} class="alarm-now">
 		<h3><span class="dot cross" aria-hidden="true" />{w.what} <code>{s.fault}</code></h3>
 		<dl><dt>{t("alarms.why")}</dt><dd>{w.why}</dd><dt>{t("alarms.clear")}</dt><dd>{w.clear}</dd>
-			{others.length > 0 && <><dt>{t("alarms.others")}</dt><dd>{others.map((f) => faultWords(f).what).join(", ")}</dd></>}
+			{others.length > 0 && <><dt>{t("alarms.others")}</dt><dd>{list(others.map((f) => faultWords(f).what))}</dd></>}
 			{s.job && <><dt>{t("alarms.where")}</dt><dd>{t("alarms.inline", { job: s.jobName, line: s.line, mm: number(s.place, 3) })}</dd></>}</dl>
 		<div class="keys"><Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key>
 			<PressKey id="start" why={whyNot("start")} onPress={() => void act("start")}>{t("resume")}</PressKey></div>
@@ -51,8 +57,8 @@ export function Alarms(): JSX.Element {
 		<Card title={t("alarms.history")}>
 			{refused && <p class="note">{refused}</p>}
 			{rows && rows.length === 0 && <p class="calm">{t("alarms.empty")}</p>}
-			{rows && rows.length > 0 && <div class="scroll"><table class="list"><tbody>{rows.map((a) => <tr>
-				<td class="when">{moment(a.utime / 1000)}</td><td><b>{a.kind === "alarm" ? faultWords(a.fault).what : t(a.kind === "lost" ? "event.lost" : "event.back")}</b>{a.kind !== "back" && <p>{a.text}</p>}</td></tr>)}</tbody></table></div>}
+			{rows && rows.length > 0 && <div class="scroll"><table class="list"><thead><tr><th scope="col">{t("alarms.when")}</th><th scope="col">{t("alarms.what")}</th></tr></thead><tbody>{rows.map((a) => <tr>
+				<td class="when">{moment(a.utime / 1000)}</td><td><b>{kindWord(a)}</b>{a.kind !== "back" && <p>{said(a.text)}</p>}</td></tr>)}</tbody></table></div>}
 		</Card>
 	</div>;
 }

@@ -2,19 +2,20 @@
 //
 // The frame of every page: rail, state line, stop; and what is dropped on it.
 import type { JSX } from "preact";
-import { useEffect, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { Alarms } from "./alarms";
 import { Cut } from "./cut";
 import { Fleet } from "./fleet";
 import { clock } from "./format";
 import { Jobs, takeFile } from "./jobs";
+import { useElectrodeNames, useLine } from "./lines";
 import { link } from "./link";
 import { Machine } from "./machine";
-import { Icon, StopKey } from "./parts";
+import { Icon, StopKey, Toasts } from "./parts";
 import { Setup } from "./setup";
 import { hasWarning, stateLine } from "./stateline";
 import { Tech } from "./tech";
-import { drop, useLink, useSettings, useToasts } from "./use";
+import { useLink, useSettings } from "./use";
 import { t, type Word } from "./words";
 
 const PAGES: { id: string; word: Word; page: () => JSX.Element }[] = [
@@ -47,9 +48,23 @@ function Rail(p: { at: string }): JSX.Element {
 	</nav>;
 }
 
+/* How high the head is now: a long line has room, and sheets begin below it. */
+function useHeight(): { current: HTMLElement | null } {
+	const box = useRef<HTMLElement>(null);
+	useEffect(() => {
+		const watch = new ResizeObserver(() => document.documentElement.style.setProperty("--headnow", `${box.current?.offsetHeight ?? 0}px`));
+		watch.observe(box.current as HTMLElement);
+		return () => watch.disconnect();
+	}, []);
+	return box;
+}
+
 function Head(): JSX.Element {
+	const { stand, standOf, electrode, job, line } = link.state, box = useHeight();
+	useElectrodeNames(stand === "electrode" ? [standOf, electrode] : []);
+	useLine(/stop$/.test(stand) ? job : "", line);
 	const s = stateLine();
-	return <header class={`head ${s.tone}`}>
+	return <header class={`head ${s.tone}`} ref={box}>
 		<span class={`dot ${s.shape}`} aria-hidden="true" />
 		<div class="state" role="status" aria-live="polite"><h1>{s.title}</h1><p title={s.why}>{s.why}</p></div>
 		<small class="who">{link.hello?.machine ?? ""} <time>{clock(Date.now())}</time><br />
@@ -73,11 +88,6 @@ function Login(): JSX.Element {
 		{refused && <p class="bad" role="alert">{refused}</p>}
 		<button type="submit" class="key primary">{t("login.go")}</button>
 	</form></main>;
-}
-
-function Toasts(): JSX.Element {
-	return <div class="toasts" role="alert">{useToasts().map((o) =>
-		<button type="button" class={`toast ${o.bad ? "bad" : ""}`} onClick={() => drop(o.n)}>{o.text}</button>)}</div>;
 }
 
 /** A file may be dropped anywhere. */
@@ -121,7 +131,7 @@ export function App(): JSX.Element {
 		<a class="skip" href="#page" onClick={(e) => { e.preventDefault(); document.getElementById("page")?.focus(); }}>{t("skip")}</a>
 		<Rail at={at} /><Head />
 		<main id="page" tabIndex={-1} class={`page page-${page.id}`} key={page.id}><Page /></main>
+		{page.id !== "cut" && <Toasts />}
 		{over && <div class="dropping"><Icon name="file" />{t("drop.here")}</div>}
-		<Toasts />
 	</div>;
 }

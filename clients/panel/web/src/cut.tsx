@@ -6,9 +6,10 @@ import { useState } from "preact/hooks";
 import { isRunning, whyNot } from "./can";
 import { Strip } from "./chart";
 import { clock, duration, moment, number, parse, short } from "./format";
-import { link, type Point } from "./link";
+import { ResumeSheet } from "./jobs";
+import { link, type Axis, type Point } from "./link";
 import { useLine } from "./lines";
-import { Card, Choice, Key, NumberField, PressKey, Sheet, act } from "./parts";
+import { Card, Choice, Key, NumberField, PressKey, Sheet, Toasts, act } from "./parts";
 import { WorkChoice, useWork } from "./offsets";
 import { PathView } from "./pathview";
 import { TextSheet } from "./textview";
@@ -75,16 +76,20 @@ function Feed(p: { onOpen: () => void }): JSX.Element {
 	</Card>;
 }
 
+function axisWord(a: Axis): string {
+	const s = link.state;
+	return s.limit >> a.index & 1 ? t("setup.limit") : s.lost.includes(a.name) ? t("setup.lost") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : "";
+}
+
 function Positions(): JSX.Element {
 	const s = link.state, axes = link.hello?.axes ?? [], { place } = useWork();
-	return <Card class={`positions ${axes.length > 4 ? "many" : ""}`} label={t("cut.position")}><div class="workhead"><WorkChoice /><span>{t("work.machine")}</span></div><ul>
+	return <Card class={`positions ${axes.length > 3 ? "many" : ""} ${axes.length > 6 ? "most" : ""}`} label={t("cut.position")}><div class="workhead"><WorkChoice /><span>{t("work.machine")}</span></div><ul>
 		{axes.map((a) => <li key={a.name}><b>{a.name}</b>
 			<span class="n">{number(place(a), 3, true)}</span><u>{a.rotary ? "deg" : "mm"}</u>
 			<small class="mach" title={t("cut.machine")}>{number(s.pos[a.index] ?? 0, 3, true)}</small>
-			<em>{s.limit >> a.index & 1 ? t("setup.limit") : s.lost.includes(a.name) ? t("setup.lost") : s.unhomed >> a.index & 1 ? t("setup.unhomed") : ""}</em></li>)}
+			<em title={axisWord(a)}>{axisWord(a)}</em></li>)}
 	</ul></Card>;
 }
-
 /* Before ground was cut it is a range. */
 function left(): string {
 	const s = link.state;
@@ -121,8 +126,8 @@ function Past(p: { onClose: () => void }): JSX.Element {
 	const [rows] = useAsk<Point[]>("history", { seconds: Number(span), points: 900 }, 2000);
 	return <Sheet title={t("cut.past")} onClose={p.onClose} wide>
 		<Choice label={t("cut.past")} value={span} onChange={set} of={[{ value: "60", text: t("range.60") }, { value: "600", text: t("range.600") }, { value: "3600", text: t("range.3600") }]} />
-		<h3>{t("cut.gap")}, V</h3><Strip points={rows ?? []} at={1} colour="--acc" label={t("chart.gap")} height={190} axes span={Number(span)} />
-		<h3>{t("cut.feed")}, mm/min</h3><Strip points={rows ?? []} at={4} colour="--done" label={t("chart.feed")} height={190} axes span={Number(span)} />
+		<h3>{t("cut.gap")} <u>V</u></h3><Strip points={rows ?? []} at={1} colour="--acc" label={t("chart.gap")} height={190} axes span={Number(span)} />
+		<h3>{t("cut.feed")} <u>mm/min</u></h3><Strip points={rows ?? []} at={4} colour="--done" label={t("chart.feed")} height={190} axes span={Number(span)} />
 	</Sheet>;
 }
 
@@ -156,19 +161,22 @@ function chips(): Chip[] {
 	const f = (name: string, unit: string) => v[name] === undefined ? "\u2013" : `${short(v[name] as number)} ${unit}`;
 	const wire = [{ id: "height", label: t("cut.height"), text: `${short(link.hello?.height ?? 0)} mm`, open: "*" }];
 	const jump = [{ id: "jump_mm", label: t("cut.jump"), text: v.jump_mm === undefined ? "\u2013" : `${short(v.jump_mm)} mm / ${short(v.jump_every_s ?? 0)} s`, open: "jump_mm jump_every_s" }];
+	const speed = { id: "override", label: t("cut.override"), text: `${number(s.override * 100, 0)} %`, open: "%" };
 	return [
+		...(s.override === 0 ? [speed] : []),
 		{ id: "condition", label: t("cut.condition"), text: s.condition || "\u2013", open: "*" },
 		{ id: "peak_a", label: t("cut.peak"), text: f("peak_a", "A"), open: "peak_a" },
 		{ id: "on_us", label: t("cut.onoff"), text: v.on_us === undefined ? "\u2013" : `${short(v.on_us)} / ${short(v.off_us ?? 0)} \u00b5s`, open: "on_us off_us" },
 		{ id: "servo_v", label: t("cut.servochip"), text: f("servo_v", "V"), open: "servo_v" },
 		...(isWire() ? wire : jump),
-		{ id: "override", label: t("cut.override"), text: `${number(s.override * 100, 0)} %`, open: "%" },
+		...(s.override === 0 ? [] : [speed]),
 	];
 }
 
 // What ends the state that it is in, if it is not the start.
-function Middle(): JSX.Element {
+function Middle(p: { open: (what: string) => void }): JSX.Element {
 	const s = link.state;
+	if (s.state === "idle" && s.interrupted) return <Key id="resume" class="primary" why={whyNot("send")} onPress={() => p.open("resume")}>{t("jobs.resume")}</Key>;
 	if (s.state === "fault") return <Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key>;
 	if (!s.asks) return <Key id="hold" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>;
 	const electrode = s.stand === "electrode";
@@ -178,16 +186,16 @@ function Middle(): JSX.Element {
 
 function Foot(p: { open: (what: string) => void }): JSX.Element {
 	const s = link.state, held = s.state === "hold" && s.far > 0;
-	return <footer class="foot">
-		<div class="chips">{chips().map((c) => <button type="button" id={`chip-${c.id}`} class={`chip ${s.set.some((f) => c.open.split(" ").includes(f)) ? "set" : ""}`} onClick={() => p.open(c.open)}>
+	return <div class="bottom"><Toasts /><footer class="foot">
+		<div class="chips">{chips().map((c) => <button type="button" id={`chip-${c.id}`} class={`chip ${c.id === "override" && s.override === 0 ? "zero" : ""} ${s.set.some((f) => c.open.split(" ").includes(f)) ? "set" : ""}`} onClick={() => p.open(c.open)}>
 			<span>{c.label}</span><b>{c.text}</b></button>)}</div>
 		<div class="keys">
 			<Key id="retract" why={whyNot("retract")} onPress={() => p.open("retract")}>{t("retract")}</Key>
-			<Middle />
+			<Middle open={p.open} />
 			<PressKey id="start" class={isRunning() || s.asks ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
 				onPress={() => void act("start")}>{t(held ? "resume" : "start")}</PressKey>
 		</div>
-	</footer>;
+	</footer></div>;
 }
 
 export function Cut(): JSX.Element {
@@ -208,10 +216,11 @@ export function Cut(): JSX.Element {
 		<Foot open={set} />
 		{open === "past" && <Past onClose={() => set("")} />}
 		{open === "retract" && <RetractSheet onClose={() => set("")} />}
+		{open === "resume" && <ResumeSheet id={s.interrupted} onClose={() => set("")} />}
 		{open === "%" && <OverrideSheet onClose={() => set("")} />}
 		{open === "text" && <TextSheet job={s.job} lines={s.lines} at={s.line} onClose={() => set("")} />}
 		{open === "*" && <ValuesSheet onClose={() => set("")} />}
-		{open && !["past", "retract", "%", "*", "text"].includes(open) && <ValueSheet names={open.split(" ")} onClose={() => set("")} onMore={() => set("*")} />}
+		{open && !["past", "retract", "resume", "%", "*", "text"].includes(open) && <ValueSheet names={open.split(" ")} onClose={() => set("")} onMore={() => set("*")} />}
 	</>;
 }
 

@@ -9,7 +9,7 @@ import { number, parse } from "./format";
 import { link } from "./link";
 import { Card, Choice, Key, NumberField, PressKey, Sheet, act } from "./parts";
 import { say } from "./use";
-import { t } from "./words";
+import { list, t } from "./words";
 
 const STATES = ["there", "worn", "absent"] as const;
 type ElectrodeState = typeof STATES[number];
@@ -129,7 +129,7 @@ export function ElectrodeCard(): JSX.Element {
 		{refused && <p class="note">{refused}</p>}
 		{rows && rows.length === 0 && <p class="calm">{t("el.empty")}</p>}
 		<ul class="jobs">{(rows ?? []).map((e) => <li key={e.n}><button type="button" class="job electrode-row" aria-label={`${t("el.edit", { n: e.n })} ${e.name}`} onClick={() => set(e)}>
-			<b>T{e.n} {e.name}</b><span>{[e.material, e.state === "there" ? "" : t(`el.${e.state}`)].filter((x) => x).join(", ")}{e.held && <em>{t("el.held")}</em>}</span>
+			<b>T{e.n} {e.name}</b><span>{list([e.material, e.state === "there" ? "" : t(`el.${e.state}`)])}{e.held && <em>{t("el.held")}</em>}</span>
 			<span class="n">{t("el.wear")} {number(e.wear_mm, 3)} mm</span><Left e={e} /></button></li>)}</ul>
 		{open && <ElectrodeSheet e={open === "new" ? null : open} onClose={close} />}
 	</Card>;

@@ -15,7 +15,7 @@ import { PathView } from "./pathview";
 import { Picture } from "./picture";
 import { TextSheet } from "./textview";
 import { save, say, useAsk, usePages } from "./use";
-import { faultWords, jobWord, t } from "./words";
+import { faultWords, fieldWord, jobWord, list, said, t } from "./words";
 
 interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
 interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string; line: string }
@@ -75,7 +75,8 @@ export async function sendText(name: string, text: string, start: boolean): Prom
 	try {
 		const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(name)}`, new Blob([text]));
 		if (c.ok) return await send(d, start);
-		say(`${c.line > 0 ? `${t("jobs.errorat", { line: c.line, column: c.column })}: ` : ""}${c.found}; ${c.wanted}`, true);
+		const why = t("also", { one: c.found, other: c.wanted });
+		say(c.line > 0 ? t("pair", { what: t("jobs.errorat", { line: c.line, column: c.column }), is: why }) : why, true);
 	} catch (e) {
 		say(broken(e), true);
 	}
@@ -88,7 +89,7 @@ async function send(d: Draft, start: boolean): Promise<boolean> {
 	try {
 		// Held first, so that what starts it is the press of a person.
 		const a = await link.post<Sent>(`/api/jobs?hold=1&name=${encodeURIComponent(d.name)}&line=${Number(d.line) || 0}`, d.file ?? new Blob([d.text]), progress);
-		if (a.code !== 0) { say(a.reason ?? `${a.found}; ${a.wanted}`, true); if (draft) put({ ...draft, busy: "" }); return false; }
+		if (a.code !== 0) { say(said(a.reason ?? t("also", { one: a.found ?? "", other: a.wanted ?? "" })), true); if (draft) put({ ...draft, busy: "" }); return false; }
 		say(d.line ? a.reason ?? "" : t("jobs.sent", { name: d.name }));
 		if (start) await begin(a.job as string);
 	} catch (e) {
@@ -153,7 +154,7 @@ function New(): JSX.Element {
 		<div class="verdict" role="status" aria-live="polite">
 			{d.busy && <p>{d.busy}</p>}
 			{!d.busy && c?.ok && <p class="good">{t("jobs.ok", { lines: c.lines ?? 0, mm: number(c.length ?? 0, 2) })} {t("jobs.sum", { cut: number(c.cut ?? 0, 2), rapid: number(c.rapid ?? 0, 2) })}</p>}
-			{!d.busy && c && !c.ok && <div class="refusal"><b>{c.line > 0 ? t("jobs.errorat", { line: c.line, column: c.column }) : c.where}</b><p>{c.found}</p><p><i>{t("jobs.accepted")}:</i> {c.wanted}</p></div>}
+			{!d.busy && c && !c.ok && <div class="refusal"><b>{c.line > 0 ? t("jobs.errorat", { line: c.line, column: c.column }) : c.where}</b><p>{c.found}</p><p><i>{t("pair", { what: t("jobs.accepted"), is: "" })}</i> {c.wanted}</p></div>}
 		</div>
 		<div class="keys end"><NumberField id="fromline" label={t("jobs.line")} value={d.line} onInput={(line) => put({ ...d, line })} />
 			<Key id="send" why={why || line} onPress={() => void send(d, false).then((ok) => { if (ok) put(null); })}>{t("jobs.send")}</Key>
@@ -167,20 +168,26 @@ function energy(j: number | null | undefined): string {
 
 function Sums(p: { job: Job }): JSX.Element {
 	const came = p.job.conditions ?? [], faults = p.job.faults ?? [], used = p.job.electrodes ?? [];
-	return <>{came.length > 0 && <><h3>{t("jobs.conditions")}</h3><div class="scroll"><table class="list" id="conditions"><tbody>{came.map((c) =>
-		<tr><td>{c.condition || "\u2013"}</td><td class="n">{duration(c.job_s)}</td><td class="n">{t("cut.retracts")} {c.retracts}</td><td class="n">{t("cut.shorts")} {c.shorts}</td><td class="n">{energy(c.energy_j)}</td></tr>)}</tbody></table></div></>}
-		{faults.length > 0 && <><h3>{t("jobs.faults")}</h3><div class="scroll"><table class="list" id="jobfaults"><tbody>{faults.map((f) =>
-			<tr><td class="when">{moment(f.utime / 1000)}</td><td>{faultWords(f.fault).what}</td><td class="n">{t("jobs.inline", { line: f.line })}</td><td class="n">{number(f.place_mm, 3)} mm</td></tr>)}</tbody></table></div></>}
-		{used.length > 0 && <><h3>{t("el.used")}</h3><div class="scroll"><table class="list" id="jobelectrodes"><thead><tr><th scope="col">{t("el.n")}</th><th scope="col">{t("el.wear")}</th><th scope="col">{t("el.sparked")}</th><th scope="col">{t("el.shift")}</th></tr></thead><tbody>{used.map((e) =>
+	return <>{came.length > 0 && <><h3>{t("jobs.conditions")}</h3><div class="scroll"><table class="list" id="conditions"><thead><tr><th scope="col">{t("cut.condition")}</th>{(["jobs.time", "cut.retracts", "cut.shorts", "jobs.energy"] as const).map((w) => <th scope="col" class="n">{t(w)}</th>)}</tr></thead><tbody>{came.map((c) =>
+		<tr><td>{c.condition || "\u2013"}</td><td class="n">{duration(c.job_s)}</td><td class="n">{c.retracts}</td><td class="n">{c.shorts}</td><td class="n">{energy(c.energy_j)}</td></tr>)}</tbody></table></div></>}
+		{faults.length > 0 && <><h3>{t("jobs.faults")}</h3><div class="scroll"><table class="list" id="jobfaults"><thead><tr><th scope="col">{t("alarms.when")}</th><th scope="col">{t("alarms.what")}</th><th scope="col" class="n">{t("cut.line")}</th><th scope="col" class="n">{t("cut.path")}</th></tr></thead><tbody>{faults.map((f) =>
+			<tr><td class="when">{moment(f.utime / 1000)}</td><td>{faultWords(f.fault).what}</td><td class="n">{f.line}</td><td class="n">{number(f.place_mm, 3)} mm</td></tr>)}</tbody></table></div></>}
+		{used.length > 0 && <><h3>{t("el.used")}</h3><div class="scroll"><table class="list" id="jobelectrodes"><thead><tr>{(["el.n", "el.wear", "el.sparked", "el.shift"] as const).map((w) => <th scope="col" class="n">{t(w)}</th>)}</tr></thead><tbody>{used.map((e) =>
 			<tr><td class="n">{e.electrode || t("el.none")}</td><td class="n">{e.known ? `${number(e.wear_before_mm, 4)} \u2192 ${number(e.wear_after_mm, 4)} mm` : "\u2013"}</td><td class="n">{duration(e.sparked_s)}</td><td class="n">{number(e.shift_mm, 4, true)} mm</td></tr>)}</tbody></table></div></>}
 	</>;
+}
+
+/* A condition has a name of its own, a value that of its field. */
+function changeWord(what: string): string {
+	const f = link.hello?.fields.find((x) => x.name === what);
+	return f ? fieldWord(f.name, f.help) : said(what);
 }
 
 function Details(p: { id: string; name: string; onClose: () => void }): JSX.Element {
 	const [j] = useAsk<Job>("show", { job: p.id });
 	const [reads, read] = useState(false);
 	return <Sheet title={t("jobs.details", { name: p.name })} onClose={p.onClose} wide>{j && <>
-		<dl class="facts"><dt>{t("jobs.state")}</dt><dd>{jobWord(j.state)}</dd>{j.reason && <><dt>{t("jobs.reason")}</dt><dd>{j.reason}</dd></>}
+		<dl class="facts"><dt>{t("jobs.state")}</dt><dd>{jobWord(j.state)}</dd>{j.reason && <><dt>{t("jobs.reason")}</dt><dd>{said(j.reason)}</dd></>}
 			<dt>{t("jobs.time")}</dt><dd>{duration(j.job_s)}</dd><dt>{t("jobs.length")}</dt><dd>{number(j.path_mm ?? 0, 3)} {t("of")} {number(j.length_mm ?? 0, 3)} mm</dd>
 			{link.hello?.process !== 1 && <><dt>{t("jobs.depth")}</dt><dd>{number(j.depth_mm ?? 0, 3)} mm</dd><dt>{t("cut.jumps")}</dt><dd>{j.jumps ?? 0}</dd></>}<dt>{t("cut.retracts")}</dt><dd>{j.retracts ?? 0}</dd><dt>{t("cut.shorts")}</dt><dd>{j.shorts ?? 0}</dd>
 			<dt>{t("jobs.arcs")}</dt><dd>{j.arcs ?? "\u2013"}</dd><dt>{t("jobs.energy")}</dt><dd>{energy(j.energy_j)}</dd></dl>
@@ -189,19 +196,25 @@ function Details(p: { id: string; name: string; onClose: () => void }): JSX.Elem
 		{reads && <TextSheet job={p.id} lines={j.lines} at={1} onClose={() => read(false)} />}
 		<Sums job={j} />
 		<h3>{t("jobs.changes")}</h3>
-		{(j.changes ?? []).length === 0 ? <p class="calm">{t("jobs.nochanges")}</p> : <div class="scroll"><table class="list"><tbody>{j.changes?.map((c) =>
-			<tr><td class="when">{moment(c.utime / 1000)}</td><td>{c.what}{c.now !== null && <> {c.was ?? "\u2013"} {"\u2192"} {c.now}</>}</td><td class="n">{number(c.place_mm, 3)} mm</td></tr>)}</tbody></table></div>}
+		{(j.changes ?? []).length === 0 ? <p class="calm">{t("jobs.nochanges")}</p> : <div class="scroll"><table class="list" id="jobchanges"><thead><tr><th scope="col">{t("alarms.when")}</th><th scope="col">{t("alarms.what")}</th>{(["jobs.setwas", "jobs.setis", "cut.path"] as const).map((w) => <th scope="col" class="n">{t(w)}</th>)}</tr></thead><tbody>{j.changes?.map((c) =>
+			<tr><td class="when">{moment(c.utime / 1000)}</td><td>{changeWord(c.what)}</td><td class="n">{c.was ?? ""}</td><td class="n">{c.now ?? ""}</td><td class="n">{number(c.place_mm, 3)} mm</td></tr>)}</tbody></table></div>}
 	</>}</Sheet>;
 }
 
-/** The operator answers for the places of axes that nothing can home. */
-function ResumeSheet(p: { job: Job; onClose: () => void }): JSX.Element {
+/** The operator answers for the places of axes that nothing can home.  Then the
+ * job is ready, and the page Cut has its Start. */
+export function ResumeSheet(p: { id: string; onClose: () => void }): JSX.Element {
+	const [job] = useAsk<Job>("show", { job: p.id });
 	const axes = link.state.lost, letters = [...axes].join(" ");
-	const go = () => void act("resume", { job: p.job.job, text: axes }).then(p.onClose);
-	return <Sheet title={`${t("jobs.resume")}: ${p.job.name}`} onClose={p.onClose}>
-		<p>{t("jobs.resume.about")}</p><p>{p.job.reason}</p>
+	const go = async () => {
+		const ok = await act("resume", { job: p.id, text: axes });
+		p.onClose();
+		if (ok) location.hash = "#/cut";
+	};
+	return <Sheet title={t("pair", { what: t("jobs.resume"), is: job?.name ?? "" })} onClose={p.onClose}>
+		<p>{t("jobs.resume.about")}</p><p>{said(job?.reason ?? "")}</p>
 		{axes && <p class="note warn">{t("alarms.lost", { axes: letters })}</p>}
-		<div class="keys end"><PressKey id="resumejob" class="primary" why={whyNot("send")} onPress={go}>{axes ? t("jobs.resume.sure", { axes: letters }) : t("jobs.resume")}</PressKey></div>
+		<div class="keys end"><PressKey id="resumejob" class="primary" why={whyNot("send")} onPress={() => void go()}>{axes ? t("jobs.resume.sure", { axes: letters }) : t("jobs.resume")}</PressKey></div>
 	</Sheet>;
 }
 
@@ -228,20 +241,21 @@ async function clearQueue(): Promise<void> {
 
 function Queue(p: { open: (j: Job) => void }): JSX.Element {
 	const s = link.state;
-	const [resumed, resume] = useState<Job | null>(null);
+	const [resumed, resume] = useState("");
 	const { rows, refused, again, next } = usePages<Job>("queue", { turn: `${s.job}${s.jobState}${s.queue}` }, 3000);
 	const waiting = (rows ?? []).filter((o) => o.state === "queued").length;
 	const clear = waiting > 1 ? <PressKey id="queueclear" class="small quiet" why={whyNot("send")} onPress={() => void clearQueue().then(again)}>{t("jobs.clear")}</PressKey> : undefined;
 	return <Card title={t("jobs.queue")} right={clear}>{refused && <p class="note">{refused}</p>}
 		{rows && rows.length === 0 && <p class="calm">{t("jobs.empty")}</p>}
-		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b><span>{jobWord(j.state)}{j.hold && j.state !== "running" ? `, ${t("jobs.waits")}` : ""}</span><span class="n">{takes(j)}</span></button>
+		<ul class="jobs">{(rows ?? []).map((j) => <li key={j.job}><button type="button" class="job" onClick={() => p.open(j)}><b>{j.name}</b><span>{list([jobWord(j.state), j.hold && j.state !== "running" ? t("jobs.waits") : ""])}</span><span class="n">{takes(j)}</span></button>
 			{j.state === "queued" && waiting > 1 && WAYS.map((w) =>
 				<Key class="small quiet" label={t(w.word, { name: j.name })} why={whyNot("send")} onPress={() => void act("move", { job: j.job, arg: w.arg }).then(again)}>{w.sign}</Key>)}
-			{j.state === "interrupted" && <Key class="small" why={whyNot("send")} onPress={() => resume(j)}>{t("jobs.resume")}</Key>}
+			{j.state === "interrupted" && <Key class="small" why={whyNot("send")} onPress={() => resume(j.job)}>{t("jobs.resume")}</Key>}
+			{["running", "held", "fault"].includes(j.state) && <PressKey class="small" why={whyNot("end")} onPress={() => void act("stop").then(again)}>{t("end")}</PressKey>}
 			{["queued", "ready", "interrupted"].includes(j.state) && <Key class="small quiet" why={whyNot("send")} onPress={() => void act("remove", { job: j.job }).then(again)}>{t("remove")}</Key>}</li>)}</ul>
 		{s.queueS > 0 && <p class="timenote" id="queuetotal">{t("jobs.total", { time: duration(s.queueS + Math.max(0, s.eta)), at: s.queueEnd * 1000 - Date.now() > 20 * 3600e3 ? moment(s.queueEnd * 1000) : clock(s.queueEnd * 1000) })}{s.queueUntold > 0 && ` ${t("jobs.untold", { n: s.queueUntold })}`}</p>}
 		{next && <Key class="quiet" onPress={next}>{t("jobs.more")}</Key>}
-		{resumed && <ResumeSheet job={resumed} onClose={() => { resume(null); again(); }} />}
+		{resumed && <ResumeSheet id={resumed} onClose={() => { resume(""); again(); }} />}
 	</Card>;
 }
 
@@ -264,7 +278,7 @@ interface Total { time: string; jobs: number; done: number; job_s: number; erode
 function Totals(p: { words: string; months: boolean; by: (m: boolean) => void }): JSX.Element {
 	const [rows] = useAsk<Total[]>("totals", { text: p.words, arg: p.months ? 1 : 0 });
 	return <><Choice label={t("jobs.totals")} value={p.months ? "m" : "d"} onChange={(v) => p.by(v === "m")} of={[{ value: "d", text: t("jobs.days") }, { value: "m", text: t("jobs.months") }]} />
-		<div class="scroll"><table class="list" id="totalrows"><thead><tr><th scope="col">{t(p.months ? "jobs.month" : "jobs.day")}</th><th scope="col">{t("page.jobs")}</th><th scope="col">{t("job.done")}</th><th scope="col">{t("jobs.time")}</th><th scope="col">{t("jobs.eroding")}</th><th scope="col">{t("jobs.energy")}</th></tr></thead>
+		<div class="scroll"><table class="list" id="totalrows"><thead><tr><th scope="col">{t(p.months ? "jobs.month" : "jobs.day")}</th>{(["page.jobs", "job.done", "jobs.time", "jobs.eroding", "jobs.energy"] as const).map((w) => <th scope="col" class="n">{t(w)}</th>)}</tr></thead>
 			<tbody>{(rows ?? []).map((r) => <tr><td>{r.time}</td><td class="n">{r.jobs}</td><td class="n">{r.done}</td><td class="n">{duration(r.job_s)}</td><td class="n">{duration(r.erode_s)}</td><td class="n">{energy(r.energy_j)}</td></tr>)}</tbody></table></div></>;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Lines of the program that runs, asked for by the hundred and kept.
+// Lines of the program that runs, asked for by the hundred and kept; and what
+// the table calls an electrode that is asked for.
 import { useEffect, useState } from "preact/hooks";
 import { link } from "./link";
+import { list } from "./words";
 
 interface Lines { first: number; text: string }
 
@@ -13,7 +15,7 @@ const asked = new Set<number>();
 /** The text of a line of a job; "" while it is not known. */
 export function useLine(job: string, line: number): string {
 	const [, again] = useState(0);
-	if (job !== ofJob) {
+	if (job && job !== ofJob) {
 		ofJob = job;
 		known.clear();
 		asked.clear();
@@ -30,5 +32,30 @@ export function useLine(job: string, line: number): string {
 			again((n) => n + 1);
 		});
 	}, [job, line]);
-	return known.get(line) ?? "";
+	return lineKnown(job, line);
+}
+
+/** The same, of lines that somebody has asked for already. */
+export function lineKnown(job: string, line: number): string {
+	return job === ofJob ? known.get(line) ?? "" : "";
+}
+
+interface Row { n: number; name: string; material: string }
+const called = new Map<number, string>();
+
+/** Name and material of an electrode, of those that useElectrodeNames() asked for. */
+export function electrodeKnown(n: number): string {
+	return called.get(n) ?? "";
+}
+
+/** Asks what these electrodes are called. */
+export function useElectrodeNames(of: number[]): void {
+	const [, again] = useState(0);
+	useEffect(() => {
+		for (const n of of) if (n > 0) void link.ask<Row[]>("electrodes", { arg: n - 1 }).then((a) => {
+			const row = a.code === 0 ? a.body?.find((e) => e.n === n) : undefined;
+			called.set(n, list([row?.name ?? "", row?.material ?? ""]));
+			again((k) => k + 1);
+		});
+	}, [of.join(), link.connection]);
 }

@@ -6,7 +6,7 @@ import { moment, number } from "./format";
 import { link } from "./link";
 import { Card, Choice, Key } from "./parts";
 import { change, save, useAsk, useSettings, type Settings } from "./use";
-import { isWord, t } from "./words";
+import { isWord, said, t } from "./words";
 
 interface Finding { what: string; verdict: string; found: string; mend: string }
 interface Note { t: number; text: string }
@@ -36,19 +36,19 @@ function Latency(): JSX.Element {
 function Doctor(): JSX.Element {
 	const [rows, refused] = useAsk<Finding[]>("doctor", {}, 30000);
 	return <Card title={t("machine.doctor")}>{!rows && <p class="calm">{refused || t("machine.doctoring")}</p>}
-		<ul class="findings">{rows?.map((f) => <li class={f.verdict}><b>{f.what}</b><em>{isWord(`verdict.${f.verdict}`) ? t(`verdict.${f.verdict}` as "verdict.good") : f.verdict}</em><p>{f.found}</p>{f.mend && <code>{f.mend}</code>}</li>)}</ul></Card>;
+		<ul class="findings">{rows?.map((f) => <li class={f.verdict}><b>{said(f.what)}</b><em>{isWord(`verdict.${f.verdict}`) ? t(`verdict.${f.verdict}` as "verdict.good") : f.verdict}</em><p>{said(f.found)}</p>{f.mend && <code>{said(f.mend)}</code>}</li>)}</ul></Card>;
 }
 
 function Acts(): JSX.Element {
 	const [rows] = useAsk<Note[]>("notes", {}, 3000);
 	return <Card title={t("machine.acts")}>{rows?.length === 0 && <p class="calm">{t("machine.noacts")}</p>}
-		<div class="scroll tall" tabIndex={0} role="region" aria-label={t("machine.acts")}><table class="list"><tbody>{rows?.map((n) => <tr><td class="when">{moment(n.t)}</td><td>{n.text}</td></tr>)}</tbody></table></div></Card>;
+		<div class="scroll tall" tabIndex={0} role="region" aria-label={t("machine.acts")}><table class="list"><thead><tr><th scope="col">{t("alarms.when")}</th><th scope="col">{t("alarms.what")}</th></tr></thead><tbody>{rows?.map((n) => <tr><td class="when">{moment(n.t)}</td><td>{said(n.text)}</td></tr>)}</tbody></table></div></Card>;
 }
 
 function Log(): JSX.Element {
 	const [rows, refused] = useAsk<Line[]>("log", {}, 10000);
 	return <Card title={t("machine.log")}>{(refused || rows?.length === 0) && <p class="calm">{refused || t("machine.nolog")}</p>}
-		<div class="scroll tall" tabIndex={0} role="region" aria-label={t("machine.log")}><table class="list"><tbody>{[...(rows ?? [])].reverse().map((l) => <tr><td class="when">{moment(Number(l.__REALTIME_TIMESTAMP) / 1000)}</td><td><code>{l._SYSTEMD_UNIT?.replace(".service", "")}</code> {l.MESSAGE}</td></tr>)}</tbody></table></div></Card>;
+		<div class="scroll tall" tabIndex={0} role="region" aria-label={t("machine.log")}><table class="list"><thead><tr><th scope="col">{t("alarms.when")}</th><th scope="col">{t("alarms.what")}</th></tr></thead><tbody>{[...(rows ?? [])].reverse().map((l) => <tr><td class="when">{moment(Number(l.__REALTIME_TIMESTAMP) / 1000)}</td><td><code>{l._SYSTEMD_UNIT?.replace(".service", "")}</code> {l.MESSAGE}</td></tr>)}</tbody></table></div></Card>;
 }
 
 async function bundle(): Promise<void> {
@@ -63,7 +63,7 @@ function Browser(): JSX.Element {
 	return <Card title={t("machine.settings")}>
 		<div class="setting"><span>{t("machine.language")}</span><Choice label={t("machine.language")} value={s.language} onChange={(language: Settings["language"]) => change({ language })} of={[{ value: "en", text: "English" }, { value: "zh-CN", text: "\u4e2d\u6587" }]} /></div>
 		<div class="setting"><span>{t("machine.theme")}</span><Choice label={t("machine.theme")} value={s.theme} onChange={(theme: Settings["theme"]) => change({ theme })} of={(["auto", "light", "dark"] as const).map((v) => ({ value: v, text: t(`theme.${v}`) }))} /></div>
-		<dl class="facts"><dt>{t("machine.user")}</dt><dd>{h?.user} ({h ? t(`role.${h.role}`) : ""})</dd><dt>{t("machine.versions")}</dt><dd>edm-panel {h?.version}</dd>
+		<dl class="facts"><dt>{t("machine.user")}</dt><dd>{h && t("bracket", { what: h.user, is: t(`role.${h.role}`) })}</dd><dt>{t("machine.versions")}</dt><dd>edm-panel {h?.version}</dd>
 			<dt>{t("machine.kind")}</dt><dd>{t(h?.simulated ? "machine.simulated" : "machine.real")}</dd></dl>
 		<div class="keys"><Key onPress={() => void bundle()}>{t("machine.bundle")}</Key>{link.session?.login && <Key class="quiet" onPress={() => void link.logout()}>{t("machine.logout")}</Key>}</div></Card>;
 }

@@ -69,7 +69,7 @@ function OffsetSheet(p: { row: Row; axes: Axis[]; onClose: () => void }): JSX.El
 	return <Sheet title={t("off.edit", { work: p.row.work })} onClose={p.onClose}>
 		<Choice label={t("off.means")} value={means} onChange={mean} of={(Object.keys(MEANS) as Means[]).map((m) => ({ value: m, text: t(`off.${m}`) }))} />
 		<p class="note">{t(`off.${means}.about`)}</p>
-		<div class="fields">{p.axes.map((a) => <NumberField id={`off-${a.name}`} key={a.name} label={`${a.name} (${t("off.now")} ${number(at(p.row, a), 3, true)})`}
+		<div class="fields">{p.axes.map((a) => <NumberField id={`off-${a.name}`} key={a.name} label={t("bracket", { what: a.name, is: `${t("off.now")} ${number(at(p.row, a), 3, true)}` })}
 			unit={a.rotary ? "deg" : "mm"} value={v[a.name] ?? ""} onInput={(x) => set({ ...v, [a.name]: x })} />)}</div>
 		<div class="keys end"><Key id="off-clear" why={whyNot("send") || (p.row.touched === "" && p.row.turn_deg === 0 ? t("off.asfile") : "")} onPress={() => go(["clear"])}>{t("off.clear")}</Key>
 			<Key id="off-save" class="primary" why={why} onPress={() => go(given.map((a) => a.name + MEANS[means] + parse(v[a.name] as string)))}>{t("el.save")}</Key></div>
@@ -81,7 +81,7 @@ export function OffsetCard(): JSX.Element {
 	const [open, set] = useState("");
 	const axes = link.hello?.axes ?? [], row = rows?.find((r) => r.work === open);
 	return <Card title={t("setup.offsets")} class="offsets"><p class="note">{refused || t("setup.offsetnote")}</p>
-		<div class="scroll"><table class="list"><thead><tr><th />{axes.map((a) => <th scope="col" class="n" key={a.name}>{a.name}</th>)}<th scope="col" class="n">{t("off.turn")}</th></tr></thead>
+		<div class="scroll"><table class="list"><thead><tr><th scope="col">{t("off.system")}</th>{axes.map((a) => <th scope="col" class="n" key={a.name}>{a.name}</th>)}<th scope="col" class="n">{t("off.turn")}</th></tr></thead>
 			<tbody>{rows?.map((r) => <tr key={r.work}><th scope="row"><Key class="small" label={t("off.edit", { work: r.work })} onPress={() => set(r.work)}>{r.work}</Key></th>
 				{axes.map((a) => <td class="n" key={a.name}>{number(at(r, a), 3, true)}{r.touched.includes(a.name) ? "*" : ""}</td>)}<td class="n">{r.turn_deg === 0 ? "\u2013" : `${number(r.turn_deg, 3, true)}\u00b0`}</td></tr>)}</tbody></table></div>
 		{row && <OffsetSheet row={row} axes={axes} onClose={() => { set(""); again(); }} />}

@@ -6,8 +6,8 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { whyNot } from "./can";
 import { parse } from "./format";
 import { link } from "./link";
-import { say } from "./use";
-import { t } from "./words";
+import { drop, say, sheets, useSheets, useToasts } from "./use";
+import { said, t } from "./words";
 
 export const PRESS_MS = 1000;
 
@@ -132,18 +132,29 @@ export function StopKey(p: { over?: boolean }): JSX.Element {
 		{t("stop")}<small>{t("stop.note")}</small></button>;
 }
 
+/** What is to be told for a moment.  It has a place of its own, above the keys or
+ * at the end of a sheet, and lies over nothing. */
+export function Toasts(p: { over?: boolean }): JSX.Element | null {
+	const all = useToasts(), open = useSheets() > 0;
+	if (open && !p.over) return null;
+	return <div class="toasts" role="alert">{all.map((o) =>
+		<button type="button" class={`toast ${o.bad ? "bad" : ""}`} key={o.n} onClick={() => drop(o.n)}>{o.text}</button>)}</div>;
+}
+
 export function Sheet(p: { title: string; onClose: () => void; children: ComponentChildren; wide?: boolean }): JSX.Element {
 	const ref = useRef<HTMLDialogElement>(null);
 	useEffect(() => {
 		const d = ref.current;
 		if (d && !d.open) d.showModal();
-		return () => d?.close();
+		sheets(1);
+		return () => { sheets(-1); d?.close(); };
 	}, []);
 	return <dialog ref={ref} class={`sheet ${p.wide ? "wide" : ""}`} aria-label={p.title}
 		onClick={(e) => { if (e.target === ref.current) p.onClose(); }}
 		onCancel={(e) => { e.preventDefault(); p.onClose(); }}>
 		<header><h2>{p.title}</h2><Key class="small quiet" onPress={p.onClose}>{t("close")}</Key></header>
 		<div class="sheet-body">{p.children}</div>
+		<Toasts over />
 		<StopKey over />
 	</dialog>;
 }
@@ -167,7 +178,7 @@ export function Choice<T extends string>(p: { value: T; of: { value: T; text: st
 /** A request that does something; a refusal is said. */
 export async function act(what: string, more: Record<string, unknown> = {}): Promise<boolean> {
 	const a = await link.ask(what, more);
-	if (a.code !== 0) say(a.reason === "connection" ? t("no.connection") : a.reason, true);
+	if (a.code !== 0) say(a.reason === "connection" ? t("no.connection") : said(a.reason), true);
 	return a.code === 0;
 }
 

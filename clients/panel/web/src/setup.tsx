@@ -12,7 +12,7 @@ import { Card, Choice, HoldKey, Key, NumberField, PressKey, act } from "./parts"
 import { beginPress } from "./press";
 import { PROBES, isWhole, type Probe, type ProbeId, type Values } from "./probes";
 import { say, useAsk } from "./use";
-import { t, type Word } from "./words";
+import { jobWord, said, t, type Word } from "./words";
 
 const STEPS = ["0.001", "0.01", "0.1", "1", "10"] as const;
 
@@ -29,10 +29,10 @@ function JogKey(p: { axis: Axis; way: number; step: string; speed: Speed }): JSX
 		onPress={() => void act("jog", { text: p.axis.name, arg: p.way * Number(p.step) })}>{name}</Key>;
 }
 
-function AxisState(p: { axis: Axis }): JSX.Element {
+function AxisState(p: { axis: Axis }): JSX.Element | null {
 	const s = link.state, a = p.axis;
-	const word = s.limit >> a.index & 1 ? "setup.limit" : s.lost.includes(a.name) ? "setup.lost" : s.unhomed >> a.index & 1 ? "setup.unhomed" : a.homes ? "setup.homed" : "setup.nohome";
-	return <span class={`axis-state ${word === "setup.homed" || word === "setup.nohome" ? "" : "warn"}`}>{t(word)}</span>;
+	const word = s.limit >> a.index & 1 ? "setup.limit" : s.lost.includes(a.name) ? "setup.lost" : s.unhomed >> a.index & 1 ? "setup.unhomed" : a.homes ? "setup.homed" : "";
+	return word === "" ? null : <span class={`axis-state ${word === "setup.homed" ? "" : "warn"}`}>{t(word)}</span>;
 }
 
 function JogCard(): JSX.Element {
@@ -65,13 +65,12 @@ function PlaceCard(): JSX.Element | null {
 		{axes.map((a) => <PlaceRow key={a.name} axis={a} />)}</Card>;
 }
 
-function HomeCard(): JSX.Element {
+function HomeCard(): JSX.Element | null {
 	const axes = (link.hello?.axes ?? []).filter((a) => a.homes);
-	return <Card title={t("setup.home")}>
-		{axes.length === 0 ? <p class="calm">{t("setup.nohome")}</p> : <div class="keys wrap">
-			<PressKey class="primary" why={whyNot("home")} onPress={() => void act("home")}>{t("setup.homeall")}</PressKey>
-			{axes.map((a) => <PressKey why={whyNot("home")} onPress={() => void act("home", { text: a.name })}>{t("setup.home")} {a.name}</PressKey>)}</div>}
-	</Card>;
+	if (!axes.length) return null;
+	return <Card title={t("setup.home")}><div class="keys wrap">
+		<PressKey class="primary" why={whyNot("home")} onPress={() => void act("home")}>{t("setup.homeall")}</PressKey>
+		{axes.map((a) => <PressKey why={whyNot("home")} onPress={() => void act("home", { text: a.name })}>{t("setup.home")} {a.name}</PressKey>)}</div></Card>;
 }
 
 /** What the cycle does, drawn: the work hatched, the electrode as a ring. */
@@ -118,22 +117,22 @@ function unitOf(key: string): string {
 	return key.endsWith("_deg") || "ABC".includes(key) ? "\u00b0" : " mm";
 }
 
-/* The job that feels, until it is over. */
-function useFelt(felt: Felt | null, over: () => void): string {
+/* Such a job, until it is over: why it failed, or "done". */
+function useOver(job: string, over: () => void): string {
 	const [state, set] = useState("");
 	useEffect(() => {
 		let live = true;
 		set("");
 		const look = async () => {
-			const a = await link.ask<{ state: string; reason: string }>("show", { job: felt?.job });
+			const a = await link.ask<{ state: string; reason: string }>("show", { job });
 			if (!live || a.code !== 0 || !["done", "stopped", "fault", "interrupted"].includes(a.body.state)) return;
 			clearInterval(timer);
-			set(a.body.state === "done" ? "done" : a.body.reason || a.body.state);
+			set(a.body.state === "done" ? "done" : said(a.body.reason) || jobWord(a.body.state));
 			over();
 		};
-		const timer = felt ? setInterval(() => void look(), 400) : 0;
+		const timer = job ? setInterval(() => void look(), 400) : 0;
 		return () => { live = false; clearInterval(timer); };
-	}, [felt?.job]);
+	}, [job]);
 	return state;
 }
 
@@ -145,23 +144,27 @@ function Changes(p: { target: string; felt: Felt | null; state: string; now: Bef
 		{felt && p.state !== "done" && <p class={p.state ? "warn" : "note"}>{p.state ? t("touch.failed", { why: p.state }) : t("touch.feels")}</p>}</div>;
 }
 
+function hasAxis(name: string): boolean {
+	return !!link.hello?.axes.some((a) => a.name === name);
+}
+
 function ProbeForm(p: { probe: Probe }): JSX.Element {
 	const [v, set] = useState<Values>(() => Object.fromEntries(p.probe.asks.map((a) => [a.key, a.preset])));
 	const [work, into] = useState<string>("G54"), [felt, feel] = useState<Felt | null>(null);
 	const own = !!p.probe.electrode, target = own ? `T${link.state.electrode}` : work;
-	const [now, look] = useBefore(target, own, p.probe.shows(v)), state = useFelt(felt, look);
+	const [now, look] = useBefore(target, own, p.probe.shows(v)), state = useOver(felt?.job ?? "", look);
 	const whole = isWhole(p.probe, v), words = whole ? [target, ...p.probe.words(v)] : [];
 	const why = !whole ? t("probe.bad") : own && !link.state.electrode ? t("touch.none") : link.state.loaded ? t("no.loaded") : whyNot("send");
 	const change = (key: string, text: string) => set({ ...v, [key]: text });
 	const run = async () => {
 		const a = await link.ask("offset", { text: words.join("\n") });
-		if (a.code !== 0) say(a.reason === "connection" ? t("no.connection") : a.reason, true);
+		if (a.code !== 0) say(a.reason === "connection" ? t("no.connection") : said(a.reason), true);
 		else feel({ job: a.reason, target, was: now });
 	};
 	return <div class="probe"><div class="probe-top"><Drawing id={p.probe.id} v={v} /><p>{t(`probe.${p.probe.id}.about`)}</p></div>
 		{!own && <div class="field"><span>{t("touch.into")}</span><Choice label={t("touch.into")} value={work} onChange={(w) => { into(w); feel(null); }} of={WORKS.map((w) => ({ value: w, text: w }))} /></div>}
-		<div class="fields">{p.probe.asks.filter((a) => !a.when || a.when(v)).map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice class="wrap" label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.map((c) => ({ value: c, text: c === "new" || c === "worn" ? t(`touch.${c}`) : c.replace("-", "\u2212") }))} /></label> :
-			<NumberField key={a.key} label={a.may ? `${t(a.label)} (${t("probe.nozero")})` : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
+		<div class="fields">{p.probe.asks.filter((a) => !a.when || a.when(v)).map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice class="wrap" label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.filter((c) => !/^[XYZ]$/.test(c) || hasAxis(c)).map((c) => ({ value: c, text: c === "new" || c === "worn" ? t(`touch.${c}`) : c.replace("-", "\u2212") }))} /></label> :
+			<NumberField key={a.key} label={a.may ? t("bracket", { what: t(a.label), is: t("probe.nozero") }) : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
 		<Changes target={target} felt={felt} state={state} now={now} />
 		<p class="note">{t("probe.warn")}</p>
 		<div class="keys end"><PressKey id="probe-run" class="primary" why={why} onPress={() => void run()}>{t("touch.run")}</PressKey></div>
@@ -172,10 +175,33 @@ function ProbeCard(): JSX.Element {
 	const [at, set] = useState<ProbeId>("edge");
 	const probe = PROBES.find((x) => x.id === at) as Probe;
 	return <Card title={t("setup.probe")} class="probing">
-		<Choice class="wrap" label={t("setup.probe")} value={at} onChange={set} of={PROBES.map((x) => ({ value: x.id, text: t(`probe.${x.id}`) }))} />
+		<Choice class="wrap" label={t("setup.probe")} value={at} onChange={set} of={PROBES.filter((x) => !x.electrode || hasAxis("Z")).map((x) => ({ value: x.id, text: t(`probe.${x.id}`) }))} />
 		<ProbeForm probe={probe} key={at} /></Card>;
 }
 
+/* Lines of this browser, newest first; there when the page is opened again. */
+const LAST_MAX = 6;
+let lastLines: string[] = [];
+
+function MdiCard(): JSX.Element {
+	const [line, set] = useState(""), [ran, run] = useState({ job: "", line: "" });
+	const state = useOver(ran.job, () => undefined), text = line.trim();
+	const why = !text ? t("mdi.none") : link.state.loaded ? t("no.loaded") : whyNot("jog") || whyNot("send");
+	const go = async () => {
+		const a = await link.ask("mdi", { text });
+		if (a.code !== 0) { say(a.reason === "connection" ? t("no.connection") : said(a.reason), true); return; }
+		lastLines = [text, ...lastLines.filter((l) => l !== text)].slice(0, LAST_MAX);
+		run({ job: a.reason, line: text });
+		set("");
+	};
+	const told = !ran.job ? "" : t(state === "" ? "mdi.runs" : state === "done" ? "mdi.done" : "mdi.failed", { line: ran.line, why: state });
+	return <Card title={t("mdi.title")} class="mdi"><p class="note">{t("mdi.about")}</p>
+		<div class="keys"><label class="field"><span>{t("mdi.line")}</span><span class="box"><input id="mdi" autocomplete="off" autocapitalize="characters" spellcheck={false} maxLength={200} value={line} onInput={(e) => set(e.currentTarget.value)} /></span></label>
+			<PressKey id="mdi-run" class="primary" why={why} onPress={() => void go()}>{t("mdi.run")}</PressKey></div>
+		{told && <p role="status" class={state && state !== "done" ? "note warn" : "note"}>{told}</p>}
+		{lastLines.length > 0 && <div class="keys wrap" role="group" aria-label={t("mdi.last")}>{lastLines.map((l) => <Key key={l} class="small quiet code" onPress={() => set(l)}>{l}</Key>)}</div>}</Card>;
+}
+
 export function Setup(): JSX.Element {
-	return <div class="setup-grid"><div><JogCard /><HomeCard /><PlaceCard /><ElectrodeCard /></div><div><ProbeCard /><OffsetCard /></div></div>;
+	return <div class="setup-grid"><div><JogCard /><MdiCard /><HomeCard /><PlaceCard /><ElectrodeCard /></div><div><ProbeCard /><OffsetCard /></div></div>;
 }

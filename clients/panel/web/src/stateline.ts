@@ -3,7 +3,8 @@
 // One line that says how it is: the state, why it waits, what to do.
 import { number } from "./format";
 import { link } from "./link";
-import { faultWords, isWord, stateWord, t } from "./words";
+import { electrodeKnown, lineKnown } from "./lines";
+import { faultWords, fieldWord, isWord, list, stateWord, t } from "./words";
 
 // Stands that somebody confirms.
 const CONFIRMED = new Set(["electrode", "setting"]);
@@ -48,11 +49,30 @@ function held(): StateLine {
 /** Why it stands or waits, and what ends that; "" if it does not. */
 function stands(): string {
 	const s = link.state, word = `stand.${s.stand}${s.asks || !CONFIRMED.has(s.stand) ? "" : ".done"}`;
-	return isWord(word) ? t(word, { n: s.standOf, line: s.line, held: s.electrode || "\u2013", condition: s.condition, fields: fieldsOf(s.standOf) }) : "";
+	return isWord(word) ? t(word, { n: named(s.standOf), line: s.line, said: says(), by: heldBy(), held: s.electrode ? named(s.electrode) : t("el.none"), condition: s.condition, fields: fieldsOf(s.standOf) }) : "";
+}
+
+/* What the program says about its stop. */
+function says(): string {
+	const comment = lineKnown(link.state.job, link.state.line).match(/\(([^)]*)\)|;(.*)/);
+	const text = (comment?.[1] ?? comment?.[2] ?? "").trim();
+	return text && t("pair", { what: "", is: text });
+}
+
+/* Whose command it was, if the machine knows. */
+function heldBy(): string {
+	const who = link.state.asksFor.match(/held by command of ([^;]+);/)?.[1];
+	return who ? t("bracket", { what: "", is: who }) : "";
+}
+
+/* An electrode with what the table calls it. */
+function named(n: number): string {
+	const is = electrodeKnown(n);
+	return is ? t("bracket", { what: String(n), is }) : String(n);
 }
 
 function fieldsOf(bits: number): string {
-	return (link.hello?.fields ?? []).filter((_, i) => bits >> i & 1).map((f) => f.name).join(", ");
+	return list((link.hello?.fields ?? []).filter((_, i) => bits >> i & 1).map((f) => fieldWord(f.name, f.help)));
 }
 
 function machineLine(): StateLine {

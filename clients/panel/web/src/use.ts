@@ -133,7 +133,7 @@ const toasted = new Set<() => void>();
 
 export function say(text: string, bad = false): void {
 	const t = { n: ++count, text, bad };
-	toasts = [...toasts.filter((o) => o.text !== text).slice(-2), t];
+	toasts = [...toasts.filter((o) => o.text !== text).slice(-1), t];
 	for (const h of toasted) h();
 	setTimeout(() => drop(t.n), bad ? 9000 : 4000);
 }
@@ -143,7 +143,7 @@ export function drop(n: number): void {
 	for (const h of toasted) h();
 }
 
-export function useToasts(): Toast[] {
+function useToasted(): void {
 	const [, again] = useState(0);
 	useEffect(() => {
 		let n = 0;
@@ -151,7 +151,23 @@ export function useToasts(): Toast[] {
 		toasted.add(h);
 		return () => { toasted.delete(h); };
 	}, []);
+}
+
+export function useToasts(): Toast[] {
+	useToasted();
 	return toasts;
+}
+
+let open = 0;
+/** So many sheets more, or less, are open. */
+export function sheets(more: number): void {
+	open += more;
+	for (const h of toasted) h();
+}
+
+export function useSheets(): number {
+	useToasted();
+	return open;
 }
 
 /** Hands a text to the browser as a file. */

@@ -7,7 +7,7 @@ import { whyNot } from "./can";
 import { parse, short } from "./format";
 import { link, type Field } from "./link";
 import { Key, NumberField, Sheet, act } from "./parts";
-import { fieldWord, t } from "./words";
+import { fieldWord, list, t } from "./words";
 
 export function unitWord(unit: string): string {
 	return unit.replace("us", "\u00b5s").replace("um", "\u00b5m").replace("mm3", "mm\u00b3");
@@ -49,10 +49,10 @@ function One(p: { field: Field; autofocus?: boolean }): JSX.Element {
 	};
 	const own = s.set.includes(f.name);
 	return <div class="value"><div class="value-head"><b>{fieldWord(f.name, f.help)}</b><code>{f.name}</code></div>
-		<div class="stepper"><Key id={`less-${f.name}`} label={`${f.name} \u2212`} why={why} onPress={() => go((value ?? min) - step)}>{"\u2212"}{short(step)}</Key>
+		<div class="stepper"><Key id={`less-${f.name}`} label={`${fieldWord(f.name, f.help)} \u2212`} why={why} onPress={() => go((value ?? min) - step)}>{"\u2212"}{short(step)}</Key>
 			<output>{value === undefined ? "\u2013" : short(value)} <u>{unitWord(f.unit)}</u></output>
 			{s.told[f.name] !== undefined && <em>{t("cut.told", { value: short(s.told[f.name] as number) })}</em>}
-			<Key id={`more-${f.name}`} label={`${f.name} +`} why={why} onPress={() => go((value ?? min) + step)}>+{short(step)}</Key></div>
+			<Key id={`more-${f.name}`} label={`${fieldWord(f.name, f.help)} +`} why={why} onPress={() => go((value ?? min) + step)}>+{short(step)}</Key></div>
 		<div class="keys"><NumberField label={t("cut.range", { min: short(min), max: short(max), unit: unitWord(f.unit) })} unit={unitWord(f.unit)} value={text} onInput={set} onEnter={() => { if (text && !bad) go(x); }} />
 			<Key why={why || (text === "" || bad ? t("cut.range", { min: short(min), max: short(max), unit: unitWord(f.unit) }) : "")} onPress={() => go(x)}>{t("cut.set")}</Key>
 			{own && <Key class="quiet" why={why} onPress={() => void act("set", { text: f.name, arg: null })}>{t("cut.takeback")}</Key>}</div>
@@ -72,8 +72,9 @@ export function ValuesSheet(p: { onClose: () => void }): JSX.Element {
 	const [at, set] = useState("");
 	const s = link.state, fields = (link.hello?.fields ?? []).filter((f) => f.live);
 	const one = fields.find((f) => f.name === at);
-	const more = Object.entries(s.told).filter(([name]) => !(name in s.values) && name !== "fault").map(([name, v]) => `${name} ${short(v)}`).join(", ");
-	return <Sheet title={`${t("cut.values")}: ${s.condition || "\u2013"}`} onClose={p.onClose} wide>
+	const counts = Object.entries(s.told).filter(([name]) => !(name in s.values) && name !== "fault").map(([name, v]) => `${name} ${short(v)}`);
+	const more = list(counts);
+	return <Sheet title={t("pair", { what: t("cut.values"), is: s.condition || "\u2013" })} onClose={p.onClose} wide>
 		{one ? <><One field={one} /><Key class="quiet" onPress={() => set("")}>{t("cut.more")}</Key></> :
 			<ul class="valuelist">{fields.map((f) => <li><button type="button" onClick={() => set(f.name)}>
 				<span>{fieldWord(f.name, f.help)}</span><b>{s.values[f.name] === undefined ? "\u2013" : short(s.values[f.name] as number)} <u>{unitWord(f.unit)}</u></b>

@@ -7,6 +7,7 @@
 import machine from "./machine.json";
 import { settings } from "./use";
 import { zh, zhFaults, zhFields, zhHunting } from "./zh";
+import { zhSaid } from "./zhsaid";
 
 export const en = {
 	"page.cut": "Cut", "page.jobs": "Jobs", "page.setup": "Set up",
@@ -19,6 +20,7 @@ export const en = {
 	"reset": "Reset", "end": "End job", "press": "press for 1 s",
 	"close": "Close", "cancel": "Cancel", "again": "Try again", "remove": "Remove",
 	"done": "done", "of": "of", "role": "role",
+	"list": ", ", "pair": "{what}: {is}", "also": "{one}; {other}", "bracket": "{what} ({is})",
 
 	"role.none": "nobody", "role.viewer": "viewer", "role.operator": "operator",
 	"role.service": "service",
@@ -41,10 +43,10 @@ export const en = {
 	"why.retract": "Goes back along the path: the gap was short.",
 	"why.jump": "Flushing lift of {mm} mm, then on at the same place.",
 	"why.hold": "Stands on the path, sparks off. Go on, retract, or end the job.",
-	"stand.held": "Held by command, sparks off. Go on, retract, or end the job.",
+	"stand.held": "Held by command{by}, sparks off. Go on, retract, or end the job.",
 	"stand.plc": "Held by the PLC. When it lets go: Go on.",
-	"stand.stop": "The program stops in line {line}. Go on when you are ready.",
-	"stand.optional-stop": "An optional stop in line {line}. Go on when you are ready.",
+	"stand.stop": "The program stops in line {line}{said}. Go on when you are ready.",
+	"stand.optional-stop": "An optional stop in line {line}{said}. Go on when you are ready.",
 	"stand.electrode": "Put electrode {n} in; {held} is in. Then confirm it.",
 	"stand.electrode.done": "Electrode {n} is in. Go on.",
 	"stand.setting": "Set {fields} of {condition} at the generator. Then confirm it.",
@@ -54,7 +56,7 @@ export const en = {
 	"stand.end": "The program is at its end. End the job.",
 	"stand.m-code": "Waits until the PLC has carried out M{n}.",
 	"stand.generator": "Waits until the generator has the condition.",
-	"stand.override": "The override is 0. Set it higher.",
+	"stand.override": "Positioning is set to 0 %. Set it higher.",
 	"stand.power": "Waits until the drives have power.",
 	"done.electrode": "{n} is in", "done.empty": "It is out", "done.set": "It is set",
 	"no.asks": "Confirm first what the machine asks for.",
@@ -132,6 +134,7 @@ export const en = {
 	"jobs.search": "Name, day, T3 \u2026", "jobs.nofound": "No job has all of that.", "jobs.totals": "Totals", "jobs.days": "By day", "jobs.months": "By month",
 	"jobs.day": "Day", "jobs.month": "Month", "jobs.eroding": "Eroding", "jobs.text": "Program text",
 	"text.before": "Lines before", "text.after": "Lines behind", "text.line": "First line that is shown",
+	"jobs.outcome": "What it did", "jobs.setwas": "Was", "jobs.setis": "Is",
 	"jobs.ahead": "{name}: earlier", "jobs.behind": "{name}: later",
 
 	"job.queued": "queued", "job.ready": "ready", "job.running": "runs", "job.held": "held",
@@ -144,7 +147,6 @@ export const en = {
 	"setup.home": "Home", "setup.homeall": "Home all axes", "setup.probe": "Touch off",
 	"setup.offsets": "Work offsets", "setup.position": "Position",
 	"setup.homed": "homed", "setup.unhomed": "not homed", "setup.limit": "on its limit switch", "setup.lost": "not certain",
-	"setup.nohome": "needs no homing",
 	"setup.offsetnote": "Where the origins are on the machine. * was touched off, the others are those of the machine file.",
 	"setup.faster": "Step size", "setup.held": "while pressed", "setup.speed": "Speed",
 	"setup.held.about": "Moves while the key is pressed, and stands when it is let go or the connection is lost.",
@@ -153,7 +155,7 @@ export const en = {
 	"jobs.noforecast": "no forecast: {why}", "work.inforce": "The work system in force at the line that is cut",
 	"off.turn": "Turn", "off.tiltx": "Rises along X", "off.tilty": "Rises along Y",
 	"el.x": "Shifts X (C at 0)", "el.y": "Shifts Y (C at 0)", "el.c": "Shifts C",
-	"off.edit": "Work offset {work}", "off.means": "What the numbers mean", "off.now": "origin now at",
+	"off.edit": "Work offset {work}", "off.system": "System", "off.means": "What the numbers mean", "off.now": "origin now at",
 	"off.here": "Here is", "off.here.about": "Where an axis stands becomes this number. The machine must be idle; an axis without a number stays.",
 	"off.origin": "Origin at", "off.origin.about": "The origin of an axis becomes this place of the machine. An axis without a number stays.",
 	"off.clear": "As in the machine file", "off.asfile": "All axes are as in the machine file.",
@@ -166,6 +168,10 @@ export const en = {
 	"el.measure": "Measure", "el.measure.about": "Measure makes a job: it stops until this electrode is in the holder, then goes down on the reference and writes what it finds into the table. Start it on Cut.",
 	"el.measuring": "The job that measures electrode {n} is in the queue.",
 	"el.there": "there", "el.worn": "worn", "el.absent": "absent", "el.used": "Electrodes", "cut.electrode": "Electrode",
+
+	"mdi.title": "Lines at once", "mdi.about": "A line is checked, then carried out at once. It begins from where the machine stands.",
+	"mdi.line": "Line", "mdi.run": "Carry out", "mdi.none": "Write a line first, such as G0 X5.", "mdi.runs": "{line}: it runs\u2026",
+	"mdi.done": "{line}: done", "mdi.failed": "{line}: {why}", "mdi.last": "Last lines, to be taken again",
 
 	"speed.slow": "slow", "speed.middle": "middle", "speed.fast": "fast",
 
@@ -197,9 +203,9 @@ export const en = {
 	"tech.machine": "machine file", "tech.same": "same", "tech.notes": "Notes",
 	"tech.discard": "Discard changes",
 
-	"event.lost": "edmd was lost", "event.back": "edmd is there",
+	"event.warning": "Warning", "event.lost": "edmd was lost", "event.back": "edmd is there",
 	"alarms.now": "Now", "alarms.none": "No fault.", "alarms.history": "Earlier",
-	"alarms.empty": "No alarm is recorded.", "alarms.what": "What", "alarms.why": "Why",
+	"alarms.empty": "No alarm is recorded.", "alarms.when": "When", "alarms.what": "What", "alarms.why": "Why",
 	"alarms.clear": "What to do", "alarms.where": "Where", "alarms.inline": "{job}, line {line}, {mm} mm along the path",
 	"alarms.warnings": "Warnings", "alarms.store": "The store is degraded", "alarms.interrupted": "A job was interrupted",
 	"alarms.lost": "The place of {axes} is not certain", "alarms.lost.about": "Home those that have a home. See where the others stand before the next start.",
@@ -245,14 +251,28 @@ export function t(word: Word, put: Record<string, string | number> = {}): string
 	return text.replace(/\{(\w+)\}/g, (_, k: string) => String(put[k] ?? ""));
 }
 
+/** Several things, as the language lists them. */
+export function list(of: string[]): string {
+	return of.filter((x) => x).join(t("list"));
+}
+
+/** What the machine said in a sentence of its own, as far as it is known. */
+export function said(text: string): string {
+	return settings.language === "zh-CN" ? zhSaid(text) : keys(text);
+}
+
 export function isWord(word: string): word is Word {
 	return word in en;
 }
 
+function keys(text: string): string {
+	return text.replace(/edmctl doctor/g, "Host on page Machine").replace(/edmctl estop/g, "Stop")
+		.replace(/\b(edmctl )?stop ends (it|the job)/g, "End job ends $2").replace(/edmctl /g, "");
+}
+
 // The table speaks of edmctl; here its verbs are keys and pages.
 function onPage(text: string): string {
-	return text.replace(/edmctl doctor/g, "Host on page Machine").replace(/edmctl estop/g, "Stop")
-		.replace(/edmctl /g, "").replace(/^./, (c) => c.toUpperCase());
+	return keys(text).replace(/^./, (c) => c.toUpperCase());
 }
 
 export function faultWords(fault: string): FaultWords {
