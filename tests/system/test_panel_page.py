@@ -194,7 +194,7 @@ def stands(p):
 def test_an_axis_moves_while_its_key_is_pressed(p, page):
     page.goto(p.url + "/#/setup")
     page.get_by_role("radio", name="while pressed").click()
-    page.get_by_role("radio", name="middle").click()
+    page.get_by_role("radio", name="middle", exact=True).click()
     key = page.locator("#jog-Y-plus")
     # Let go.
     hold_until_it_moves(p, page, key)
