@@ -133,6 +133,23 @@ def pytest_terminal_summary(terminalreporter):
                   sep="\t", file=f)
             for reason, n in skipped.items():
                 print("skipped", n, reason, sep="\t", file=f)
+    if os.environ.get("EDM_COUNTS_ALL"):
+        tell_all(terminalreporter)
+
+
+def tell_all(terminalreporter):
+    """What passed in all parts so far, before pytest's own last line."""
+    passed, skipped = 0, collections.Counter()
+    with open(COUNTS, encoding="utf-8") as f:
+        for kind, n, *reason in (line.rstrip("\n").split("\t") for line in f):
+            if kind == "passed":
+                passed += int(n)
+            else:
+                skipped[reason[0]] += int(n)
+    for reason, n in sorted(skipped.items()):
+        terminalreporter.write_line(f"skipped in all parts {n}: {reason}")
+    terminalreporter.write_line(
+        f"{passed} tests passed in all parts, {sum(skipped.values())} skipped")
 
 
 # -- Beside others, as in `make check`: lines in place of dots
