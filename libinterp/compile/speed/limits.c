@@ -161,11 +161,13 @@ static struct interp_straight kept_of(const struct choice *k, int share)
 	};
 }
 
+/* By itself, and at F: a cut at F has the acceleration that is left. */
 static double part_s(const struct limits *w, uint32_t from, uint32_t to,
 		     const struct interp_straight *kept)
 {
 	write_segs(w, from, to, kept);
-	return pass_moves_s(&w->pass, from, to, w->v2);
+	return pass_moves_s(&w->pass, from, to, false, w->v2) +
+	       pass_moves_s(&w->pass, from, to, true, w->v2);
 }
 
 static double time_s(const struct limits *w, const struct choice *k, int share)

@@ -15,6 +15,7 @@
 /* Segments @from up to, but not with, @to. */
 struct move {
 	uint32_t from, to;
+	bool fed;			/* no faster than F */
 	double a_mm_s2, j_mm_s3;	/* the least of them */
 	double most_mm_s;		/* it never comes to more */
 	double slope_mm_s2;		/* the mean of a ramp */
@@ -25,12 +26,18 @@ static bool is_way(const struct interp_seg *s)
 	return s->kind < INTERP_BEGIN && s->length_mm > 0;
 }
 
+static double ceiling_mm_s(const struct interp_seg *s, bool fed)
+{
+	return (double)(fed ? pass_least(s->feed_mm_s, s->feed_max_mm_s) :
+			      s->feed_max_mm_s);
+}
+
 /* What segment @s comes to, between nodes of @from and @to mm/s.  Short lines
  * that bend are not faster than their nodes. */
 static double comes_to_mm_s(const struct interp_seg *s, const struct move *m,
 			    double from, double to)
 {
-	const double top = smaller((double)s->feed_max_mm_s, m->most_mm_s);
+	const double top = smaller(ceiling_mm_s(s, m->fed), m->most_mm_s);
 	const double node = larger(from, to);
 	double v;
 
@@ -94,11 +101,12 @@ static double move_slope_mm_s2(const struct interp_seg *segs,
 }
 
 /* Up to the next stand. */
-static struct move next_move(const struct pass *w, uint32_t from, uint32_t to)
+static struct move next_move(const struct pass *w, uint32_t from, uint32_t to,
+			     bool fed)
 {
 	const struct interp_seg *segs = w->segs;
 	struct move ret = {
-		from, from, w->travel_a_mm_s2, w->travel_j_mm_s3, 0, 0
+		from, from, fed, w->travel_a_mm_s2, w->travel_j_mm_s3, 0, 0
 	};
 	double mm = 0;
 
@@ -125,7 +133,7 @@ static void speeds(const struct interp_seg *segs, const struct move *m,
 	for (uint32_t i = m->from; i < m->to; i++) {
 		const struct interp_seg *s = &segs[i];
 		const double most = smaller((double)s->node_mm_s,
-					    (double)s->feed_max_mm_s);
+					    ceiling_mm_s(s, m->fed));
 
 		if (is_way(s))
 			at = smaller(most * most,
@@ -145,7 +153,7 @@ static void speeds(const struct interp_seg *segs, const struct move *m,
 static double way_s(const struct interp_seg *s, const struct move *m,
 		    double b2, double e2)
 {
-	const double feed = (double)s->feed_max_mm_s, a = m->slope_mm_s2;
+	const double feed = ceiling_mm_s(s, m->fed), a = m->slope_mm_s2;
 	const double top2 = smaller(feed * feed,
 				    (b2 + e2) / 2 + a * s->length_mm);
 	const double top = sqrt(top2);
@@ -155,13 +163,13 @@ static double way_s(const struct interp_seg *s, const struct move *m,
 }
 
 double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
-		    float *v2)
+		    bool fed, float *v2)
 {
 	const struct interp_seg *segs = w->segs;
 	double sum = 0;
 
 	while (from < to) {
-		const struct move m = next_move(w, from, to);
+		const struct move m = next_move(w, from, to, fed);
 		double at = 0;
 
 		speeds(segs, &m, v2);

@@ -49,10 +49,10 @@ int pass_stands(struct pass *w);
  * pass_moves_s() - the time of segments @from up to, but not with, @to, as
  * moves from stand to stand.
  *
- * @v2: room for @to numbers
+ * @fed: no faster than F.  @v2: room for @to numbers
  */
 double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
-		    float *v2);
+		    bool fed, float *v2);
 
 /** pass_set_stand() - at the end of segment @i; false: take it away. */
 static inline void pass_set_stand(struct pass *w, uint32_t i, bool stands)

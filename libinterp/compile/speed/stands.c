@@ -176,7 +176,7 @@ static double alone_s(const struct stands *k, uint32_t from, uint32_t to)
 	float *s = &k->alone_s[to - 1];
 
 	if (*s == UNKNOWN)
-		*s = (float)pass_moves_s(k->pass, from, to, k->v2);
+		*s = (float)pass_moves_s(k->pass, from, to, false, k->v2);
 	return (double)*s;
 }
 
@@ -189,7 +189,7 @@ static double stand_share(const struct stands *k, uint32_t from, uint32_t mid,
 	double one;
 
 	pass_set_stand(k->pass, mid - 1, false);
-	one = pass_moves_s(k->pass, from, to, k->v2);
+	one = pass_moves_s(k->pass, from, to, false, k->v2);
 	pass_set_stand(k->pass, mid - 1, true);
 	return apart / one;
 }
@@ -265,13 +265,13 @@ static int stands_make(struct stands *k, struct pass *w)
 static void keep_if_worth(const struct stands *k)
 {
 	const struct pass *w = k->pass;
-	const double s = pass_moves_s(w, 0, k->to, k->v2);
+	const double s = pass_moves_s(w, 0, k->to, false, k->v2);
 
 	for (uint32_t i = 0; i < k->to; i++) {
 		k->stood[i] = w->segs[i].flags & INTERP_SEG_STAND;
 		pass_set_stand(k->pass, i, false);
 	}
-	if (s >= WORTH * pass_moves_s(w, 0, k->to, k->v2))
+	if (s >= WORTH * pass_moves_s(w, 0, k->to, false, k->v2))
 		return;
 	for (uint32_t i = 0; i < k->to; i++)
 		pass_set_stand(k->pass, i, k->stood[i]);
