@@ -71,12 +71,29 @@ static void tell(const struct jobs *j, int work, const double *was,
 		snprintf(to + n, size - n, " as it was");
 }
 
+/* Does C turn the electrode, and not the work? */
+bool offset_has_c(const struct jobs *j)
+{
+	struct interp_kinematics k;
+	struct interp_diag none;
+
+	return j->config->axes.present >> INTERP_C & 1 &&
+	       (config_kinematics(j->config, &k, &none) < 0 ||
+		!interp_kin_turns_work(&k, INTERP_C));
+}
+
+/* By what an electrode is turned where C stands. */
+static struct interp_turn turn_by_c(const struct jobs *j, double c_deg)
+{
+	return interp_turn_of(offset_has_c(j) ? c_deg : 0);
+}
+
 /* The electrode in the holder, with C where it stands. */
 static void by_electrode(struct jobs *j, double c_deg,
 			 double ret[INTERP_NAXES])
 {
 	const uint32_t held = electrode_held(j);
-	const struct interp_turn c = interp_turn_of(c_deg);
+	const struct interp_turn c = turn_by_c(j, c_deg);
 	struct store_electrode e;
 
 	memset(ret, 0, INTERP_NAXES * sizeof(*ret));
@@ -126,24 +143,6 @@ static int put_axes(struct jobs *j, const struct touch *t,
 		if (axes >> i & 1)
 			err = store_work_put(j->store, t->work, i, mm[i]);
 	return err;
-}
-
-/* Does C turn the electrode, and not the work? */
-bool offset_has_c(const struct jobs *j)
-{
-	struct interp_kinematics k;
-	struct interp_diag none;
-	int c = -1, x = -1;
-
-	if (!(j->config->axes.present >> INTERP_C & 1))
-		return false;
-	if (config_kinematics(j->config, &k, &none) < 0)
-		return true;
-	for (uint32_t i = 0; i < k.njoints; i++) {
-		c = k.joint[i].axis == INTERP_C ? (int)i : c;
-		x = k.joint[i].axis == INTERP_X ? (int)i : x;
-	}
-	return c > x;
 }
 
 static int put_skew(struct jobs *j, const struct touch *t,
@@ -204,7 +203,7 @@ static void middle_of(const struct jobs *j, const struct touch *t,
 				       t->mm[INTERP_X] : m->x_mm);
 	by[INTERP_Y] = at[INTERP_Y] - (t->here >> INTERP_Y & 1 ?
 				       t->mm[INTERP_Y] : m->y_mm);
-	c = interp_turn_of(at[INTERP_C]);
+	c = turn_by_c(j, at[INTERP_C]);
 	interp_turn_back(&c, by, by);
 	if (t->felt >> INTERP_X & 1)
 		e->x_mm = by[INTERP_X];

@@ -145,6 +145,9 @@ static void g10_writes_and_turns(void **state)
 static void what_cannot_be_turned_is_refused(void **state)
 {
 	static const struct { const char *text, *says; } rows[] = {
+		/* The first leaves another way on the machine. */
+		{ "G5 F9 I1 J0 P-1 Q0 X5 Y0\nG55\nG5 P0 Q1 X5 Y5\n",
+		  "G5 without I and J" },
 		{ "G0 X0 Y0\nG18 G2 F9 X2 Z0 R1\n", "beside the plane" },
 		{ "G0 Z1\nG18 G130 Y-1 R2 F9\n", "an orbit in the plane" },
 		{ "G80 X-5 F9\n", "feels along one" },
@@ -181,6 +184,27 @@ static void each_segment_knows_what_it_counts_from(void **state)
 	o = interp_program_origin(&n.p, 4);
 	assert_int_equal(o->work, 0);
 	nc_done(&n);
+}
+
+/* Along a turned axis both of the machine's move, so G28 without words sends
+ * both home. */
+static void all_that_moved_goes_home(void **state)
+{
+	static const char *const texts[] = {
+		"G0 X10\nG28\n", "G0 Y10\nG28\n", "G91 G0 Y10 Z1\nG28\n",
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		struct nc_read n = turned(texts[i], 30);
+		const uint32_t last = n.p.head->nsegs;
+
+		assert_true(fabs(at(&n, last - 2, INTERP_X)) > 1);
+		assert_true(fabs(at(&n, last - 2, INTERP_Y)) > 1);
+		assert_true(fabs(at(&n, last, INTERP_X)) < 0.0011);
+		assert_true(fabs(at(&n, last, INTERP_Y)) < 0.0011);
+		nc_done(&n);
+	}
 }
 
 /* Each pass of a contour says which one it is, and how far the wire is beside
@@ -222,7 +246,8 @@ static void each_pass_of_a_wire_knows_which_it_is(void **state)
 
 /* -- The electrode --------------------------------------------------------- */
 
-static struct nc_read beside(const char *text)
+static struct nc_read beside_on(const char *text,
+				const struct interp_kinematics *k)
 {
 	static const struct interp_electrode one = {
 		3, { [INTERP_X] = 0.5, [INTERP_Y] = -0.25, [INTERP_Z] = 4,
@@ -234,10 +259,16 @@ static struct nc_read beside(const char *text)
 	struct nc_read n = nc_ready();
 
 	n.o.electrodes = &all;
+	n.o.kinematics = k;
 	nc_read_bytes(&n, text, strlen(text));
 	interp_build_destroy(n.build);
 	n.build = NULL;
 	return n;
+}
+
+static struct nc_read beside(const char *text)
+{
+	return beside_on(text, NULL);
 }
 
 /* X Y of the machine where the middle is over (x, y). */
@@ -270,6 +301,39 @@ static void its_middle_stays_over_the_place_as_c_turns(void **state)
 	assert_true(fabs(at(&n, 4, INTERP_C) - 100) < 1e-9);
 	assert_true(fabs(at(&n, 3, INTERP_Z) - 7) < 1e-9);
 	nc_done(&n);
+}
+
+/* A C in the table turns the work: the electrode stays as it is, X Y stay, and
+ * a cut may turn C. */
+static void a_table_does_not_turn_the_electrode(void **state)
+{
+	static const struct { const char *chain; bool table; } rows[] = {
+		{ "C(0 0 -120) A(0 15 -80) X Y Z", true },
+		{ "C X Y Z", true }, { "X Y Z C", false },
+		{ "A(0 15 -80) X Y Z C", false }, { "A X Y Z", false },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		struct interp_kinematics k;
+		struct interp_diag d;
+		struct nc_read n;
+
+		interp_kin_clear(&k);
+		assert_int_equal(interp_kin_parse(&k, rows[i].chain, &d), 0);
+		n = beside_on("G0 X1 Y2 C0\nG0 C90\nG1 F9 X4\n", &k);
+		assert_int_equal(n.rc, 0);
+		if (rows[i].table) {
+			assert_true(fabs(at(&n, 4, INTERP_X) - 1.5) < 1e-9);
+			assert_true(fabs(at(&n, 4, INTERP_Y) - 1.75) < 1e-9);
+		} else {
+			assert_middle(&n, 4, 1, 2);
+		}
+		nc_done(&n);
+		n = beside_on("G0 X1\nG1 F9 C5\n", &k);
+		assert_int_equal(n.rc, rows[i].table ? 0 : -EINVAL);
+		nc_done(&n);
+	}
 }
 
 static void no_cut_turns_c_with_it(void **state)
@@ -316,9 +380,11 @@ int main(void)
 		cmocka_unit_test(places_of_the_machine_stay_those_of_the_machine),
 		cmocka_unit_test(g10_writes_and_turns),
 		cmocka_unit_test(what_cannot_be_turned_is_refused),
+		cmocka_unit_test(all_that_moved_goes_home),
 		cmocka_unit_test(each_segment_knows_what_it_counts_from),
 		cmocka_unit_test(each_pass_of_a_wire_knows_which_it_is),
 		cmocka_unit_test(its_middle_stays_over_the_place_as_c_turns),
+		cmocka_unit_test(a_table_does_not_turn_the_electrode),
 		cmocka_unit_test(no_cut_turns_c_with_it),
 		cmocka_unit_test(a_turn_has_its_inverse),
 	};

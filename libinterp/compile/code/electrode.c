@@ -10,6 +10,7 @@
  * The middle of an electrode may be beside the axis that C turns about.  Then X
  * Y are shifted too, by what is given for C 0, turned as C is.  Where a rapid
  * motion turns C, X Y go along, so that the middle stays over the same place.
+ * A C in the table turns the work, and the electrode stays as it is.
  */
 #include "code/reader.h"
 
@@ -71,14 +72,16 @@ void nc_electrode_at(const struct nc_reader *r, double c_deg,
 		     double ret_mm[INTERP_NAXES])
 {
 	const struct interp_turn c =
-		interp_turn_of(nc_is_eccentric(r) ? c_deg : 0);
+		interp_turn_of(nc_is_eccentric(r) && nc_turns_electrode(r) ?
+			       c_deg : 0);
 
 	interp_turn_to(&c, r->electrode_by, ret_mm);
 }
 
 int nc_check_eccentric(struct nc_reader *r, const double end_mm[INTERP_NAXES])
 {
-	if (!nc_is_eccentric(r) || end_mm[INTERP_C] == nc_here(r)[INTERP_C])
+	if (!nc_is_eccentric(r) || !nc_turns_electrode(r) ||
+	    end_mm[INTERP_C] == nc_here(r)[INTERP_C])
 		return 0;
 	return nc_refuse_at(r, r->line, "an electrode in the middle, or C "
 			    "turned by G0 before the cut", "a cut in which C "

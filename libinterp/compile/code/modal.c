@@ -66,6 +66,8 @@ int nc_set_turn(struct nc_reader *r)
 		return nc_refuse(r, at, "a program of its own for the probing",
 				 "work that is turned by %g degrees, after a "
 				 "probing motion along X or Y", deg);
+	/* The direction in which a G5 left was that of the other system. */
+	r->curve.smooth = false;
 	err = contour_turn(&r->contour, deg, r->diag);
 	nc_set_offset(r);
 	return err;

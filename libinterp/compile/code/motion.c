@@ -47,11 +47,16 @@ static void machine_target(const struct nc_reader *r,
 {
 	const struct interp_turn *t = &r->contour.guides.turn;
 	const struct nc_block *b = &r->block;
+	const bool turns = b->words & (NC_BIT(NC_X) | NC_BIT(NC_Y) |
+				       NC_BIT(NC_U) | NC_BIT(NC_V));
 
-	interp_turn_to(t, end_mm, end_mm);
+	/* There and back is not the same to the last bit. */
+	if (turns)
+		interp_turn_to(t, end_mm, end_mm);
 	for EACH_AXIS(b->words & NC_AXES, i)
 		end_mm[i] = b->value[i] * r->scale[i];
-	interp_turn_back(t, end_mm, end_mm);
+	if (turns)
+		interp_turn_back(t, end_mm, end_mm);
 }
 
 static inline void target(const struct nc_reader *r,

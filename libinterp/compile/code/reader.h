@@ -392,6 +392,13 @@ static inline bool nc_is_eccentric(const struct nc_reader *r)
 	return r->electrode_by[INTERP_X] != 0 || r->electrode_by[INTERP_Y] != 0;
 }
 
+/** nc_turns_electrode() - does C turn the electrode, and not the table? */
+static inline bool nc_turns_electrode(const struct nc_reader *r)
+{
+	return !r->o->kinematics ||
+	       !interp_kin_turns_work(r->o->kinematics, INTERP_C);
+}
+
 /** nc_check_eccentric() - may it be cut to @end_mm, as far as C turns? */
 int nc_check_eccentric(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
 
@@ -573,13 +580,27 @@ static inline int nc_room(struct nc_reader *r)
 /** nc_blame() - point to the word to which the builder has said no. */
 void nc_blame(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
 
+/** nc_goes() - the axes of the machine that the words of a line move. */
+static inline uint32_t nc_goes(const struct nc_reader *r)
+{
+	const uint32_t xy = NC_BIT(NC_X) | NC_BIT(NC_Y);
+	const uint32_t axes = r->block.words & NC_AXES;
+	uint32_t both = r->contour.guides.turn.deg != 0 ? xy : 0;
+
+	if (nc_has_group(r, NC_MACHINE))
+		return axes;
+	if (nc_is_eccentric(r) && nc_turns_electrode(r))
+		both |= NC_BIT(NC_C);
+	return axes & both ? axes | xy : axes;
+}
+
 /** nc_placed() - what the builder said to a motion, together with its place. */
 static inline int nc_placed(struct nc_reader *r, int rc,
 			    const double end_mm[INTERP_NAXES])
 {
 	if (rc == -EINVAL)
 		nc_blame(r, end_mm);
-	r->moved |= r->block.words & NC_AXES;
+	r->moved |= nc_goes(r);
 	return rc;
 }
 

@@ -32,6 +32,18 @@ void interp_kin_clear(struct interp_kinematics *k)
 	}
 }
 
+bool interp_kin_turns_work(const struct interp_kinematics *k,
+			   enum interp_axis axis)
+{
+	for (uint32_t i = 0; i < k->njoints; i++) {
+		if (k->joint[i].axis == axis)
+			return true;
+		if (k->joint[i].axis == INTERP_X)
+			return false;
+	}
+	return false;
+}
+
 /* -- Is it a machine? ----------------------------------------------------- */
 
 __attribute__((format(printf, 3, 4)))

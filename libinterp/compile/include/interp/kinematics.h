@@ -82,6 +82,11 @@ int interp_kin_parse(struct interp_kinematics *k, const char *chain,
  */
 int interp_kin_prepare(struct interp_kinematics *k, struct interp_diag *diag);
 
+/** interp_kin_turns_work() - does @axis turn the work, not the tool?  One that
+ *  is not in the chain does not. */
+bool interp_kin_turns_work(const struct interp_kinematics *k,
+			   enum interp_axis axis);
+
 /** interp_kin_forward() - the pose at axes @q (mm, degrees). */
 void interp_kin_forward(const struct interp_kinematics *k,
 			const double q[INTERP_NAXES],
