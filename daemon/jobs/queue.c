@@ -32,7 +32,7 @@ void queue_recount(struct jobs *j)
 {
 	j->queue.behind = store_waiting(j->store);
 	j->queue.behind_s = store_waiting_s(j->store, &j->queue.untold);
-	j->forecaster.looks = true;
+	j->forecaster.looks = j->forecaster.looks_later = true;
 }
 
 static void set_waiting(struct jobs *j, bool waiting)

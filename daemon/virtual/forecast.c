@@ -96,12 +96,12 @@ static void say_why_not(struct run *r, const char *what)
 	snprintf(r->to->why_not, sizeof(r->to->why_not), "%s", what);
 }
 
-/* A dwell says itself how long it stands. */
+/* A dwell, and what ends by time, say themselves how long they stand. */
 static bool is_stuck(struct run *r, double was_mm)
 {
 	const struct cycle *c = &r->v.cycle;
 
-	r->stuck_s = c->far_mm > was_mm || c->job.dwelling ? 0 :
+	r->stuck_s = c->far_mm > was_mm || c->job.dwelling || c->timed.end ? 0 :
 		     r->stuck_s + r->period_s;
 	if (r->stuck_s <= FORECAST_STUCK_S)
 		return false;

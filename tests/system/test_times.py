@@ -163,6 +163,24 @@ def test_a_job_that_takes_long_keeps_no_other_from_its_forecast(slow):
     rig.until(lambda: (rows()["three"].get("forecast_s") or -1) > 0, 90, 0.2)
 
 
+def test_a_job_that_was_put_off_has_its_forecast_from_the_next_service(slow):
+    c = slow.client
+    held(slow, "machine")
+    assert c.submit(SINK, "waits", hold=True).code == 0
+
+    def row():
+        return {j["job"]: j for j in json.loads(c.ask("queue").body)}["waits"]
+    rig.until(lambda: (row().get("forecast_s") or -1) > 0, 90, 0.2)
+    # As it stands where the service ends before it comes to it again.
+    slow.end("jobs")
+    with sqlite3.connect(slow.store / f"{slow.name}.db") as db:
+        db.execute("UPDATE job SET forecast_s=-2 WHERE id='waits'")
+    db.close()
+    slow.start_jobs("--store", str(slow.store))
+    c.status_where(lambda s: s.daemon == "ok", timeout=30)
+    rig.until(lambda: (row().get("forecast_s") or -1) > 0, 90, 0.2)
+
+
 def test_a_job_that_does_not_get_on_is_told_where(tmp_path):
     text = (ROOT / "examples/machine.ini").read_text()
     with rig.Machine(tmp_path) as m:
@@ -187,3 +205,10 @@ def test_a_job_that_does_not_get_on_is_told_where(tmp_path):
         assert "line 6" in row()["forecast_why"]
         out = m.ctl("queue").stdout
         assert "no forecast: it does not get on behind" in out, out
+        # One that ends by time has an end, however long that is.
+        cut = cut.replace(b"G1 Z-0.8", b"G86 Z-0.8 S4000")
+        assert m.client.submit(cut, "timed", hold=True).code == 0
+        rig.until(lambda: json.loads(m.client.ask("queue").body)[-1].get(
+            "forecast_s"), 90, 0.2)
+        s = json.loads(m.client.ask("queue").body)[-1]
+        assert s["job"] == "timed" and 4000 < s["forecast_s"] < 4600, s
