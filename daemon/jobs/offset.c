@@ -174,6 +174,11 @@ const char *offset_touched(struct jobs *j)
 	else if (!touch_is_found(&t, s))
 		snprintf(told, sizeof(told), "nothing was touched off: there "
 			 "was no contact");
+	else if (!touch_is_one_face(&t, s))
+		snprintf(told, sizeof(told), "the two contacts are askew by "
+			 "more than 45 degrees, so they are not of one face, "
+			 "and all is as it was; two places of the face that "
+			 "looks that way");
 	else if (offset_put(j, &t, s, told))
 		snprintf(told, sizeof(told), "it was felt, but the store "
 			 "failed; once more");

@@ -18,6 +18,7 @@
 
 #define WORD_MAX	64
 #define SKEW_OFF_MM	1.0		/* off the face, before it goes along */
+#define SKEW_MOST_DEG	45.0
 #define WANTED		"a system, G54 to G59.3, or an electrode, T3, and what " \
 			"becomes of it: X=5 gives the place where X stands the number 5, X@5 puts " \
 			"the origin at machine place 5, clear takes the machine file's again; X=probe+ or " \
@@ -404,6 +405,17 @@ double touch_zero_mm(const struct touch *t, int axis)
 {
 	return t->mm[axis] -
 	       (axis < INTERP_Z ? t->way[axis] * t->radius_mm : 0);
+}
+
+/* Beyond that its normal is nearer to the other axis. */
+bool touch_is_one_face(const struct touch *t, const struct shm_snapshot *s)
+{
+	double deg;
+
+	if (t->form != TOUCH_SKEW)
+		return true;
+	touch_angle(t, s, &deg);
+	return fabs(deg) <= SKEW_MOST_DEG;
 }
 
 enum touch_angle touch_angle(const struct touch *t,

@@ -83,6 +83,10 @@ void touch_at_mm(const struct touch *t, const struct shm_snapshot *s,
  *  0 is left: the number that was asked for, less the radius. */
 double touch_zero_mm(const struct touch *t, int axis);
 
+/** touch_is_one_face() - may the contacts of a skew be of the face that was
+ *  asked for?  Not if they are askew by more than 45 degrees. */
+bool touch_is_one_face(const struct touch *t, const struct shm_snapshot *s);
+
 /** touch_angle() - of a skew: how far the face turns the work, or tilts. */
 enum touch_angle touch_angle(const struct touch *t,
 			     const struct shm_snapshot *s, double *ret_deg);

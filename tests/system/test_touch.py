@@ -170,6 +170,23 @@ def test_a_corner_of_a_turned_system_is_refused(tmp_path):
         assert offsets(m)["G55"]["turn_deg"] == 0
 
 
+def test_contacts_that_are_not_of_one_face_turn_nothing(tmp_path):
+    """Below the corner of a block that stands on it, along its other side."""
+    with rig.Machine(tmp_path, ASKEW.replace("block_turn_deg = 2",
+                                             "block_turn_deg = -30")) as m:
+        m.start()
+        before = offsets(m)
+        x, y = corner(45, -40, -30)
+        near(m, x + 5, y - 8)
+        code, out = said(m.ctl("offset", "G55", "skew", "Y+", "I6"))
+        assert "not of one face" in out, (code, out)
+        assert offsets(m) == before
+        near(m, x - 20, y - 8)
+        code, out = said(m.ctl("offset", "G55", "skew", "Y+", "I-6"))
+        assert code == 0, out
+        assert offsets(m)["G55"]["turn_deg"] == pytest.approx(-30, abs=0.05)
+
+
 def test_a_face_that_rises_is_told_along_each_axis(tmp_path):
     with rig.Machine(tmp_path, ASKEW) as m:
         m.start()
