@@ -2,12 +2,14 @@
 /* tech.c - the technology table on the host: changed, saved, its versions */
 #include "ctl.h"
 
+#include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sysexits.h>
 
 #define TEXT_MAX	60000
+#define PART_MAX	40000
 
 static int done(struct ctl *c, const char *verb, const char *text, double arg)
 {
@@ -50,16 +52,39 @@ static int versions(struct ctl *c)
 	return err;
 }
 
-static int show(struct ctl *c, double n)
+/* A part from byte @at on.  Return: its bytes, of *ret_all; 0 behind the end,
+ * and after a refusal, with *ret_err. */
+static size_t show_part(struct ctl *c, double version, size_t at,
+			size_t *ret_all, int *ret_err)
 {
-	json_t *version = NULL;
-	const int err = ctl_ask_json(c, &(struct talk_question) {
-		.verb = "tech-text", .arg = n }, &version);
+	static unsigned char part[PART_MAX];
+	char from[24];
+	const char *hex;
+	json_t *o = NULL;
+	size_t n = 0;
 
-	if (err == 0)
-		fputs(ctl_text_of(version, "text"), stdout);
-	json_decref(version);
-	return err;
+	snprintf(from, sizeof(from), "%zu", at);
+	*ret_err = ctl_ask_json(c, &(struct talk_question) {
+		.verb = "tech-text", .text = from, .arg = version }, &o);
+	hex = *ret_err ? "" : ctl_text_of(o, "hex");
+	*ret_all = *ret_err ? 0 : (size_t)ctl_number_of(o, "bytes");
+	if (sodium_hex2bin(part, sizeof(part), hex, strlen(hex), NULL, &n,
+			   NULL) < 0)
+		n = 0;
+	json_decref(o);
+	return fwrite(part, 1, n, stdout);
+}
+
+static int show(struct ctl *c, double version)
+{
+	size_t at = 0, n, all;
+	int err;
+
+	do {
+		n = show_part(c, version, at, &all, &err);
+		at += n;
+	} while (n && at < all);
+	return err ? err : at == all ? 0 : EX_IOERR;
 }
 
 static int save(struct ctl *c)

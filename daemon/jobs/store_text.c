@@ -59,8 +59,7 @@ static int write_all(int fd, const char *at, size_t bytes)
 	return fsync(fd) < 0 ? -errno : 0;
 }
 
-/* The name is on the disk, too. */
-static int sync_folder(const char *path)
+int store_text_sync_folder(const char *path)
 {
 	char dir[STORE_TEXT_PATH_MAX];
 	int fd, err;
@@ -90,7 +89,7 @@ int store_text_keep(const char *path, const char *text, size_t bytes)
 		err = -errno;
 	if (err < 0)
 		unlink(fresh);
-	return err < 0 ? err : sync_folder(path);
+	return err < 0 ? err : store_text_sync_folder(path);
 }
 
 /* -- Reading --------------------------------------------------------------- */

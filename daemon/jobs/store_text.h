@@ -60,4 +60,8 @@ void store_text_sweep(struct store *s);
 /** store_text_bytes() - the size of all of them.  That of the store. */
 int64_t store_text_bytes(const struct store *s);
 
+/** store_text_sync_folder() - the name of @path is on the disk, too.  It has a
+ *  slash.  Return: 0; -errno. */
+int store_text_sync_folder(const char *path);
+
 #endif /* JOBS_STORE_TEXT_H */

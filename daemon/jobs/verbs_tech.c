@@ -11,33 +11,46 @@
 #include "compiling.h"
 #include "jobs.h"
 #include "store_tech.h"
+#include "store_text.h"
 #include "written.h"
 
 #include "interp/tech_table.h"
 
 #include <errno.h>
 #include <math.h>
+#include <sodium.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 #include <sysexits.h>
 #include <unistd.h>
 
 #define WHY_MAX		900
 #define TEXT_MAX	60000		/* of a table that fits a message */
+#define PART_MAX	20000		/* of a version that is shown, as hex */
 
 static const struct config_tech none;
 
 /* -- The file -------------------------------------------------------------- */
 
-static int write_all(const char *path, const char *text)
+/* Who may read @like may read it: edmsim, the panel.  Its owner stays as far as
+ * this service may give files away. */
+static int write_all(const char *path, const char *text, const char *like)
 {
 	FILE *f = fopen(path, "we");
+	struct stat was;
 	int err;
 
 	if (!f)
 		return -errno;
+	if (stat(like, &was) == 0) {
+		if (fchown(fileno(f), was.st_uid, was.st_gid) < 0 &&
+		    fchown(fileno(f), (uid_t)-1, was.st_gid) < 0)
+			was.st_mode &= ~(mode_t)(S_ISUID | S_ISGID);
+		fchmod(fileno(f), was.st_mode & 07777);
+	}
 	fputs(text, f);
 	fflush(f);
 	fsync(fileno(f));
@@ -45,6 +58,13 @@ static int write_all(const char *path, const char *text)
 	if (err < 0)
 		unlink(path);
 	return err;
+}
+
+/* @beside takes the place of @path, also after a power failure. */
+static int replace(const char *beside, const char *path)
+{
+	return rename(beside, path) < 0 ? -errno :
+	       store_text_sync_folder(path);
 }
 
 /* Is it one that jobs can be compiled with?  @beside: a name beside the file,
@@ -81,7 +101,7 @@ static int put(struct jobs *j, const struct jobs_lcm_command *c,
 	       const char *text, const char *what, char why[WHY_MAX])
 {
 	struct config_tech now = none;
-	char beside[600];
+	char beside[600], *path;
 	int err = config_tech_load(&now, j->config, NULL);
 
 	if (err != 0 && err != -EINVAL) {
@@ -89,8 +109,10 @@ static int put(struct jobs *j, const struct jobs_lcm_command *c,
 		config_tech_free(&now);
 		return -EIO;
 	}
-	snprintf(beside, sizeof(beside), "%s.new.tech", now.path);
-	err = write_all(beside, text);
+	/* A link goes on to name the file. */
+	path = realpath(now.path, NULL);
+	snprintf(beside, sizeof(beside), "%s.new.tech", path ? path : now.path);
+	err = path ? write_all(beside, text, path) : -errno;
 	if (err)
 		snprintf(why, WHY_MAX, "%s: %s; a table in a folder where "
 			 "edmd-jobs may write, as /var/lib/edmd", beside,
@@ -99,8 +121,8 @@ static int put(struct jobs *j, const struct jobs_lcm_command *c,
 		err = -EINVAL;
 	else if (keep(j, &now, text, c, what))
 		err = -EAGAIN;
-	else if (rename(beside, now.path) < 0)
-		err = -errno;
+	else
+		err = replace(beside, path);
 	if (err == -EAGAIN)
 		snprintf(why, WHY_MAX, "the store failed, so nothing was "
 			 "saved");
@@ -108,6 +130,7 @@ static int put(struct jobs *j, const struct jobs_lcm_command *c,
 		snprintf(why, WHY_MAX, "%s: %s", now.path, strerror(-err));
 	if (err)
 		unlink(beside);
+	free(path);
 	config_tech_free(&now);
 	return err;
 }
@@ -239,11 +262,24 @@ static char *text_of(const struct interp_tech_table *t)
 	return fclose(f) == 0 ? text : NULL;
 }
 
+/* The lines as words. */
+static const char *one_line(const char *text, char *to, size_t size)
+{
+	size_t n = (size_t)snprintf(to, size, "%s", text);
+
+	n = n < size ? n : size - 1;
+	while (n > 0 && to[n - 1] == '\n')
+		to[--n] = '\0';
+	for (char *at = to; (at = strchr(at, '\n'));)
+		*at = ' ';
+	return to;
+}
+
 void verbs_tech_set(struct jobs *j, const struct verb *v,
 		    const struct jobs_lcm_command *c)
 {
 	struct config_tech now = none;
-	char why[WHY_MAX] = "", *text = NULL;
+	char why[WHY_MAX] = "", what[4096], *text = NULL;
 	int err;
 
 	(void)v;
@@ -261,7 +297,7 @@ void verbs_tech_set(struct jobs *j, const struct verb *v,
 	else if (!text)
 		verbs_answer(j, c, EX_SOFTWARE, "no memory");
 	else
-		save(j, c, text, c->text);
+		save(j, c, text, one_line(c->text, what, sizeof(what)));
 	free(text);
 	config_tech_free(&now);
 }
@@ -308,14 +344,23 @@ void verbs_tech_back(struct jobs *j, const struct verb *v,
 	free(text);
 }
 
+/* A version may be longer than a message, and its comments in any encoding. */
 void verbs_tech_text(struct jobs *j, const struct verb *v,
 		     const struct jobs_lcm_command *c)
 {
-	char *text = version(j, c);
+	char *text = version(j, c), hex[2 * PART_MAX + 1];
+	const size_t bytes = text ? strlen(text) : 0;
+	const size_t from = strtoul(c->text, NULL, 10);
+	size_t n = from < bytes ? bytes - from : 0;
 
 	(void)v;
-	if (text)
-		verbs_answer_json(j, c, json_pack("{s:s}", "text", text));
+	if (!text)
+		return;
+	n = n < PART_MAX ? n : PART_MAX;
+	sodium_bin2hex(hex, sizeof(hex), (unsigned char *)text +
+		       (n ? from : 0), n);
+	verbs_answer_json(j, c, json_pack("{s:s, s:I}", "hex", hex, "bytes",
+					  (json_int_t)bytes));
 	free(text);
 }
 

@@ -300,6 +300,35 @@ def test_a_whole_table_that_is_bad_is_refused_with_its_line(shop, tmp_path):
     assert shop.ctl("tech", "show", "3").stdout == "nonsense"
 
 
+def test_who_could_read_the_table_can_read_it_then(shop, tmp_path):
+    file, real = tmp_path / "shop.tech", tmp_path / "of the shop.tech"
+    file.rename(real)
+    file.symlink_to(real.name)
+    real.chmod(0o664)
+    assert shop.ctl("tech", "set", "C120.servo_v=30").returncode == 0
+    assert file.is_symlink() and "30" in real.read_text()
+    assert real.stat().st_mode & 0o7777 == 0o664
+    assert sorted(f.name for f in tmp_path.glob("*tech*")) == [
+        real.name, file.name]
+
+
+def test_a_version_is_shown_whatever_it_has_in_it(shop, tmp_path):
+    """More than a message takes, and comments of an old editor."""
+    rows = "".join(f"C{1000 + i}, 20, {8 + i / 1000}\n" for i in range(4000))
+    was = b"# caf\xe9, 20 \xb5m\n" + (TABLE + rows).encode()
+    assert len(was) > 65536
+    (tmp_path / "shop.tech").write_bytes(was)
+    p = shop.ctl("tech", "set", "C120.servo_v=30", "C100.on_us=9")
+    assert p.returncode == 0, p.stderr
+    # What is not UTF-8 is a ? on a terminal, and comes back as it was.
+    p = shop.ctl("tech", "show", "1")
+    assert p.returncode == 0, p.stderr
+    assert p.stdout == was.decode("ascii", "replace").replace("\ufffd", "?")
+    assert shop.ctl("tech", "back", "1").returncode == 0
+    assert (tmp_path / "shop.tech").read_bytes() == was
+    assert versions(shop)[1]["what"] == "C120.servo_v=30 C100.on_us=9"
+
+
 def test_without_a_table_there_is_nothing_to_save(machine):
     p = machine.ctl("tech", "set", "C120.servo_v=30")
     assert p.returncode == 1 and "names no table" in p.stderr
