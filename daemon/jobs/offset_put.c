@@ -132,17 +132,13 @@ static int put_axes(struct jobs *j, const struct touch *t,
 {
 	uint32_t axes = t->at | (t->form ? t->felt : t->here);
 	const uint32_t xy = 1u << INTERP_X | 1u << INTERP_Y;
-	double mm[INTERP_NAXES];
-	int err = 0;
+	double is[WORK_NROWS];
 
 	/* Along a turned axis both of the machine's move. */
 	if (was[WORK_TURN] != 0 && axes & xy & ~t->at)
 		axes |= xy;
-	origin_of(j, t, s, was, mm);
-	for (int i = 0; i < INTERP_NAXES && err == 0; i++)
-		if (axes >> i & 1)
-			err = store_work_put(j->store, t->work, i, mm[i]);
-	return err;
+	origin_of(j, t, s, was, is);
+	return store_work_put(j->store, t->work, axes, is);
 }
 
 static int put_skew(struct jobs *j, const struct touch *t,
@@ -152,15 +148,17 @@ static int put_skew(struct jobs *j, const struct touch *t,
 		[TOUCH_TURN] = WORK_TURN, [TOUCH_TILT_X] = WORK_TILT_X,
 		[TOUCH_TILT_Y] = WORK_TILT_Y,
 	};
-	double deg;
+	double is[WORK_NROWS], deg;
 	const enum store_work_row row = rows[touch_angle(t, s, &deg)];
-	int err = store_work_put(j->store, t->work, (int)row, deg);
+	uint32_t changes = 1u << row;
 
+	is[row] = deg;
 	/* The electrode goes with the work. */
-	if (err == 0 && row == WORK_TURN && offset_has_c(j))
-		err = store_work_put(j->store, t->work, INTERP_C,
-				     was[INTERP_C] + deg - was[WORK_TURN]);
-	return err;
+	if (row == WORK_TURN && offset_has_c(j)) {
+		is[INTERP_C] = was[INTERP_C] + deg - was[WORK_TURN];
+		changes |= 1u << INTERP_C;
+	}
+	return store_work_put(j->store, t->work, changes, is);
 }
 
 static int change_work(struct jobs *j, const struct touch *t,

@@ -5,12 +5,25 @@
 #include "store_sql.h"
 
 #include <errno.h>
+#include <stdio.h>
 
-int store_work_put(struct store *s, int work, int row, double value)
+/* One statement: a failure or a kill leaves all of them as they were. */
+int store_work_put(struct store *s, int work, uint32_t rows,
+		   const double value[WORK_NROWS])
 {
+	char list[WORK_NROWS * 40 + 2] = "[";
+	size_t n = 1;
+
+	for (int i = 0; i < WORK_NROWS; i++)
+		if (rows >> i & 1)
+			n += (size_t)snprintf(list + n, sizeof(list) - n,
+					      "%s[%d,%.17g]", n > 1 ? "," : "",
+					      i, value[i]);
+	snprintf(list + n, sizeof(list) - n, "]");
 	return store_do(s, STORE_MUST, "INSERT OR REPLACE INTO work(job, work, "
-			"axis, mm) VALUES(0, ?, ?, ?)", "iid", (int64_t)work,
-			(int64_t)row, value);
+			"axis, mm) SELECT 0, ?, json_extract(value, '$[0]'), "
+			"json_extract(value, '$[1]') FROM json_each(?)", "is",
+			(int64_t)work, list);
 }
 
 int store_work_clear(struct store *s, int work)

@@ -28,9 +28,10 @@ enum store_work_row {
 	WORK_NROWS
 };
 
-/** store_work_put() - the origin of system @work on an axis, or another row of
- *  it; on the disk, or refused. */
-int store_work_put(struct store *s, int work, int row, double value);
+/** store_work_put() - these @rows of system @work, origins of axes or others,
+ *  of @value: all on the disk, or all refused. */
+int store_work_put(struct store *s, int work, uint32_t rows,
+		   const double value[WORK_NROWS]);
 
 /** store_work_clear() - system @work is that of the machine file again. */
 int store_work_clear(struct store *s, int work);

@@ -4,6 +4,7 @@ electrode, and the next job cuts there."""
 
 import json
 import math
+import sqlite3
 
 import pytest
 import rig
@@ -215,6 +216,21 @@ def test_the_electrode_turns_with_the_work(tmp_path):
         o = offsets(m)["G55"]
         assert o["turn_deg"] == pytest.approx(2, abs=0.01)
         assert o["C"] == pytest.approx(7 + o["turn_deg"], abs=1e-9)
+
+
+def test_a_skew_is_kept_as_a_whole_or_not_at_all(tmp_path):
+    """The store fails at the second row of it: no turn without its C."""
+    with rig.Machine(tmp_path, WITH_C) as m:
+        m.start()
+        near(m, -26, -20)
+        before = offsets(m)
+        with sqlite3.connect(m.store / f"{m.name}.db") as db:
+            db.execute("CREATE TRIGGER fails BEFORE INSERT ON work WHEN "
+                       "new.axis=5 BEGIN SELECT RAISE(ABORT, ''); END")
+        db.close()
+        code, out = said(m.ctl("offset", "G55", "skew", "X+", "J20"))
+        assert "the store failed" in out, (code, out)
+        assert offsets(m) == before
 
 
 def test_an_electrode_is_turned_straight_and_over_its_middle(tmp_path):
