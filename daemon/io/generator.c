@@ -13,6 +13,8 @@
 #define REFRESH_S	2e-3
 #define ANALOGUE	0.01		/* of its range: an analogue value that
 					 * is told as it was asked */
+#define EVER		(UINT32_MAX / 4)	/* versions: before all that a
+						 * place may need */
 
 /* -- What the log says ----------------------------------------------------- */
 
@@ -246,6 +248,12 @@ static void greet(struct generator *g)
 	g->says.trouble = false;
 }
 
+/* A place may need an older version than that of its last step against arcs. */
+static void have_nothing(struct generator *g)
+{
+	g->says.in_force = g->asked - EVER;
+}
+
 static void look(struct generator *g)
 {
 	const bool silent = is_silent(g);
@@ -257,14 +265,15 @@ static void look(struct generator *g)
 			.code = (int)g->heard[PROCESS_FAULT] });
 	if (lost >= 0)
 		trouble_of(g, GENERATOR_DIFFERS, lost);
-	if (odd < 0 && !silent) {
+	g->settling -= g->settling > 0;
+	if (odd < 0 && !silent && !g->settling) {
 		g->had = UINT32_MAX;
 		g->says.in_force = g->asked;
 		g->waited = 0;
 	} else if (g->says.in_force == g->asked) {
 		if (odd >= 0)
 			trouble_of(g, GENERATOR_DIFFERS, odd);
-		g->says.in_force = g->asked - 1;
+		have_nothing(g);
 	} else if (odd >= 0 && ++g->waited > g->confirm) {
 		trouble_of(g, GENERATOR_LATE, odd);
 	}
@@ -365,6 +374,18 @@ double generator_value(const struct config_way *w, int field, uint64_t count)
 	return (double)count * (w->bits == 1 ? 1 : w->scale);
 }
 
+/* It goes at once, and nobody says when it is there. */
+static bool is_blind(const struct generator *g, int field)
+{
+	return !tells(g, field) && (g->way[field].kind == WAY_CAN ||
+				    g->way[field].kind == WAY_LINES);
+}
+
+static bool is_same(double a, double b)
+{
+	return a == b || (isnan(a) && isnan(b));
+}
+
 static void take(struct generator *g, const struct io_outputs *out)
 {
 	const bool other = out->asked != g->asked;
@@ -379,12 +400,14 @@ static void take(struct generator *g, const struct io_outputs *out)
 	g->asked = out->asked;
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
 		g->had &= ~((uint32_t)(g->value[i] != out->pulse[i]) << i);
+		if (is_blind(g, i) && !is_same(g->value[i], out->pulse[i]))
+			g->settling = g->settle;
 		g->value[i] = out->pulse[i];
 	}
 	g->anew = out->reset;
 	if (out->reset) {		/* what it has must be told again */
 		g->says.trouble = false;
-		g->says.in_force = g->asked - 1;
+		have_nothing(g);
 	}
 	g->value[PROCESS_SENSE] = out->sense;
 	g->value[PROCESS_PUMP] = out->pump && !g->ill;
@@ -467,7 +490,7 @@ struct generator *generator_attach(struct io_machine *m,
 	if (!g)
 		return NULL;
 	g->axes = *m;
-	g->says.in_force = g->asked - 1;
+	have_nothing(g);
 	g->fd = fd;
 	g->refresh = periods(c, REFRESH_S);
 	g->silent = periods(c, c->generator.silent_ms * 1e-3);

@@ -77,6 +77,7 @@ struct generator_modbus {
 	struct config_way way[PROCESS_NFIELDS], told[PROCESS_NTOLD];
 	int64_t every_ns, settle_ns;
 	uint32_t tells;
+	bool blind;			/* it does not tell all that it takes */
 	/* Between the two. */
 	struct wish_slot wishes[SLOTS];
 	struct word_slot words[SLOTS];
@@ -425,10 +426,10 @@ static void put_word(struct generator_modbus *m)
 	stamped_put(&words, &m->word);
 }
 
-/* One that tells nothing has it after settle_ms. */
+/* What it does not tell it has after settle_ms. */
 static bool is_settled(const struct generator_modbus *m)
 {
-	return m->tells ||
+	return !m->blind ||
 	       clock_ns(CLOCK_MONOTONIC) - m->took_ns >= m->settle_ns;
 }
 
@@ -663,9 +664,13 @@ static struct generator_modbus *modbus_make(struct generator *g,
 	for (int i = 0; i < PROCESS_NTOLD; i++)
 		if (m->told[i].kind == WAY_REGISTER)
 			m->tells |= 1u << i;
-	for (int i = 0; i < PROCESS_NFIELDS; i++)
-		if (m->way[i].kind == WAY_REGISTER)
-			bank_add(&m->bank, m->way[i].id);
+	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+		if (m->way[i].kind != WAY_REGISTER)
+			continue;
+		bank_add(&m->bank, m->way[i].id);
+		m->blind = m->blind || (i < INTERP_NGENERATOR &&
+					!(m->tells >> i & 1));
+	}
 	m->took = m->word.version = m->word.refused = NONE;
 	sem_init(&m->wake, 0, 0);
 	return m;

@@ -100,6 +100,8 @@ static double wanted(const struct rig *r, int i)
 {
 	const struct interp_cond *c = cond_cut(&r->c.cursor);
 
+	if (i == INTERP_TECH_POLARITY && isnan(c->tech.v[i]))
+		return 1;
 	return process_nearest(&r->c.config.asking.field[i], i, c->tech.v[i]);
 }
 
@@ -367,6 +369,36 @@ static void a_set_that_does_not_reach_the_generator_is_refused(void **state)
 	rig_free(&r);
 }
 
+/* The machine file may be another one than that of before the crash. */
+static void a_set_that_does_not_reach_it_any_more_is_not_restored(void **state)
+{
+	const struct conditions_set set = { 20, 0, INTERP_TECH_PEAK_A };
+	struct cycle_config k = limited_config(false);
+	struct rig r;
+
+	(void)state;
+	rig_conds(&r, &k, 1, 2);
+	assert_true(conditions_restore(&r.c, &set, 1));
+	r.c.config.asking.field[INTERP_TECH_PEAK_A].max = 18;
+	assert_false(conditions_restore(&r.c, &set, 1));
+	rig_free(&r);
+}
+
+/* That of the job before was negative, and a slave keeps what it is not asked
+ * for. */
+static void an_electrode_is_positive_where_nobody_says_it(void **state)
+{
+	struct cycle_config k = limited_config(false);
+	struct rig r;
+
+	(void)state;
+	rig_conds(&r, &k, 1, 1);
+	while (!r.out.power)
+		step(&r, SPARKING_V);
+	assert_true(r.out.pulse[INTERP_TECH_POLARITY] == 1);
+	rig_free(&r);
+}
+
 static enum cycle_answer try_it(struct rig *r, uint32_t field, double value)
 {
 	return cycle_command(&r->c, &(struct cycle_command) {
@@ -493,6 +525,8 @@ int main(void)
 		cmocka_unit_test(trouble_ends_the_sparks_in_its_period),
 		cmocka_unit_test(what_a_person_sets_is_asked_for_at_each_change),
 		cmocka_unit_test(a_set_that_does_not_reach_the_generator_is_refused),
+		cmocka_unit_test(a_set_that_does_not_reach_it_any_more_is_not_restored),
+		cmocka_unit_test(an_electrode_is_positive_where_nobody_says_it),
 		cmocka_unit_test(it_is_tried_without_a_job_and_never_with_one),
 		cmocka_unit_test(a_job_takes_back_what_was_tried),
 		cmocka_unit_test(steps_against_arcs_are_those_that_reach_the_generator),

@@ -234,6 +234,72 @@ static void what_it_loses_in_a_step_against_arcs_is_seen_at_once(void **state)
 	unmake(&r);
 }
 
+/* The place needs what was asked before the step. */
+static void after_a_reset_it_has_nothing_until_it_tells_it(void **state)
+{
+	struct rig r;
+	uint32_t needed;
+
+	(void)state;
+	make(&r, "told_peak_a = can 1011 byte 0 bits 8 scale 0.5\n");
+	ask(&r, 6);
+	needed = r.out.asked;
+	period(&r);
+	tell(&r, 12, false);
+	period(&r);
+	assert_int_equal(r.in.generator.in_force, needed);
+	r.out.power = true;
+	r.out.asked += 3;
+	for (int i = 0; i < 2; i++) {
+		tell(&r, 24, false);
+		period(&r);
+	}
+	assert_true(r.in.generator.trouble);
+	r.out.power = false;
+	r.out.asked++;			/* the step ends with the sparks */
+	r.out.reset = true;
+	for (int i = 0; i < 10; i++) {
+		tell(&r, 24, false);
+		period(&r);
+		assert_true((int32_t)(r.in.generator.in_force - needed) < 0);
+	}
+	tell(&r, 12, false);
+	period(&r);
+	assert_int_equal(r.in.generator.in_force, r.out.asked);
+	unmake(&r);
+}
+
+static int periods_until_in_force(struct rig *r, uint8_t halves)
+{
+	int n = 0;
+
+	do {
+		tell(r, halves, false);
+		period(r);
+	} while (r->in.generator.in_force != r->out.asked && n++ < 100);
+	return n;
+}
+
+/* It tells its peak current, and neither on time nor voltage. */
+static void what_it_does_not_tell_has_settle_ms(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r, "told_peak_a = can 1011 byte 0 bits 8 scale 0.5\n"
+		 "settle_ms = 30\n");
+	ask(&r, 6);
+	r.out.pulse[INTERP_TECH_ON_US] = 8;
+	assert_int_equal(periods_until_in_force(&r, 12), 30);
+	ask(&r, 9);
+	assert_int_equal(periods_until_in_force(&r, 18), 1);
+	ask(&r, 6);
+	r.out.pulse[INTERP_TECH_IGNITION_V] = 180;
+	assert_int_equal(periods_until_in_force(&r, 12), 30);
+	assert_false(r.in.generator.trouble);
+	unmake(&r);
+}
+
 static void one_that_refuses_is_trouble_in_confirm_s(void **state)
 {
 	struct rig r;
@@ -520,6 +586,8 @@ int main(void)
 		cmocka_unit_test(what_it_tells_is_in_force_when_it_agrees),
 		cmocka_unit_test(one_that_lies_is_trouble_in_its_period),
 		cmocka_unit_test(what_it_loses_in_a_step_against_arcs_is_seen_at_once),
+		cmocka_unit_test(after_a_reset_it_has_nothing_until_it_tells_it),
+		cmocka_unit_test(what_it_does_not_tell_has_settle_ms),
 		cmocka_unit_test(one_that_refuses_is_trouble_in_confirm_s),
 		cmocka_unit_test(one_that_is_silent_is_trouble_in_silent_ms),
 		cmocka_unit_test(one_that_restarts_is_trouble),

@@ -6,6 +6,8 @@
  */
 #include "generator_help.h"
 
+#include "clocks.h"
+
 #include <arpa/inet.h>
 #include <modbus.h>
 #include <pthread.h>
@@ -103,7 +105,7 @@ static const char layout[] =
 
 static struct slave slave;
 
-static void shop_open(struct shop *s, int cuts)
+static void shop_open_with(struct shop *s, int cuts, const char *more)
 {
 	struct interp_diag d = { .line = 0 };
 	struct cycle_config k;
@@ -115,11 +117,17 @@ static void shop_open(struct shop *s, int cuts)
 		"period_us = 1000\n[generator]\ninterface = modbus\n"
 		"modbus = 127.0.0.1:%d\nmodbus_every_ms = 2\n"
 		"modbus_timeout_ms = 400\nsilent_ms = 60000\n"
-		"confirm_s = 600\npolarity_ms = 3\n%s", slave.port, layout);
+		"confirm_s = 600\npolarity_ms = 3\n%s%s", slave.port, layout,
+		more);
 	g = shop_generator(s, text);
 	assert_int_equal(generator_modbus_open(g, &s->c, &d), 0);
 	k = shop_config(s);
 	shop_load(s, cuts, &k);
+}
+
+static void shop_open(struct shop *s, int cuts)
+{
+	shop_open_with(s, cuts, "");
 }
 
 static void shop_close(struct shop *s)
@@ -172,6 +180,22 @@ static void c200_reaches_it_whole_before_the_first_spark(void **state)
 	assert_int_equal(slave.map->tab_registers[2], 200);
 	assert_int_equal(slave.map->tab_registers[3], 180);
 	assert_true(s.waits > 0);
+	shop_close(&s);
+}
+
+/* It tells the others.  It has its voltage so long after it has taken it. */
+static void what_it_does_not_tell_has_settle_ms(void **state)
+{
+	struct shop s;
+	int64_t from_ns;
+
+	(void)state;
+	shop_open_with(&s, 1, "told_ignition_v = none\nsettle_ms = 200\n");
+	from_ns = clock_ns(CLOCK_MONOTONIC);
+	for (int i = 0; i < TURNS_MOST && !s.sparks; i++)
+		turn(&s);
+	assert_true(s.sparks > 0);
+	assert_true(clock_ns(CLOCK_MONOTONIC) - from_ns >= 200 * 1000000);
 	shop_close(&s);
 }
 
@@ -248,6 +272,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(c200_reaches_it_whole_before_the_first_spark),
+		cmocka_unit_test(what_it_does_not_tell_has_settle_ms),
 		cmocka_unit_test(no_spark_has_another_condition_however_late_it_is),
 		cmocka_unit_test(what_it_refuses_never_sparks_and_is_a_fault),
 		cmocka_unit_test(one_that_loses_its_values_ends_the_sparks),

@@ -30,7 +30,8 @@ static struct interp_tech wanted(const struct cycle *c, uint16_t cond)
 	return t;
 }
 
-/* NAN: nobody says it. */
+/* An electrode is positive where nobody says it: one of a job before may have
+ * been negative. */
 static void put_polarity(struct cycle *c)
 {
 	const struct conditions *p = &c->conditions;
@@ -43,6 +44,8 @@ static void put_polarity(struct cycle *c)
 		    p->set[i].field == INTERP_TECH_POLARITY)
 			*to = p->set[i].value;
 	}
+	if (isnan(*to))
+		*to = 1;
 }
 
 static void put(struct cycle *c, const struct interp_tech *t)
@@ -193,7 +196,8 @@ static bool restores(struct cycle *c, const struct conditions_set *s)
 	struct interp_tech t;
 
 	if (s->cond >= c->cursor.p.head->nconds || !is_used(s->field) ||
-	    !interp_tech_value_ok((enum interp_tech_id)s->field, s->value))
+	    !interp_tech_value_ok((enum interp_tech_id)s->field, s->value) ||
+	    !asking_takes(c, s->field, s->value))
 		return false;
 	t = wanted(c, s->cond);
 	return fits(c, &t);
