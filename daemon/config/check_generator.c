@@ -81,7 +81,14 @@ static int check_way(struct check *q, int field, bool told)
 {
 	const char *text = told ? q->c->generator.told[field] :
 				  q->c->generator.field[field];
+	static const char *const by_interface[] = {
+		[GENERATOR_CAN] = WANTED_CAN,
+		[GENERATOR_MODBUS] = WANTED_REGISTER,
+		[GENERATOR_PLC] = WANTED_PLC,
+	};
 	const int interface = config_generator_interface(q->c);
+	const char *by = interface >= GENERATOR_CAN ? by_interface[interface] :
+						      "";
 	struct config_way w;
 	const char *wrong;
 	char key[24];
@@ -94,12 +101,32 @@ static int check_way(struct check *q, int field, bool told)
 		wrong = misfit(q, field, told, &w);
 	if (!wrong)
 		return 0;
-	interp_diag_say(q->diag, "generator.%s \"%.60s\" %s; none, %s; %s",
-			key, text, wrong,
-			strncmp(text, "dac", 3) == 0 ? WANTED_DAC :
-						       WANTED_LINES,
-			interface == GENERATOR_MODBUS ? WANTED_REGISTER :
-			interface == GENERATOR_PLC ? WANTED_PLC : WANTED_CAN);
+	interp_diag_say(q->diag, "generator.%s \"%.60s\" %s; none%s%s%s%s",
+			key, text, wrong, told ? "" : ", ",
+			told ? "" : strncmp(text, "dac", 3) == 0 ? WANTED_DAC :
+								   WANTED_LINES,
+			*by ? "; " : "", by);
+	return refuse(q, key);
+}
+
+/* A word that it has for no value that it can be asked for. */
+static int check_told(struct check *q, int field)
+{
+	struct process_delivers d;
+	struct config_way asked, told;
+	char key[24];
+
+	if (field >= INTERP_NGENERATOR)
+		return 0;
+	config_way(q->c, field, false, &asked);
+	config_way(q->c, field, true, &told);
+	config_delivers(q->c, field, &d);
+	if (told.kind == WAY_NONE || asked.kind == WAY_NONE || d.there)
+		return 0;
+	key_name(field, true, key, sizeof(key));
+	interp_diag_say(q->diag, "generator.%s tells no value that generator."
+			"%s can ask for; the same values, codes and scale",
+			key, process_name(field));
 	return refuse(q, key);
 }
 
@@ -211,6 +238,31 @@ static bool have_in_common(const struct config_way *a,
 	       other < at + a->bits;
 }
 
+/* What edmd writes of another field, or sends itself, says nothing of this
+ * one. */
+static int check_echo(struct check *q, int field, const struct config_way *w,
+		      const char *key)
+{
+	const bool said = strcmp(q->c->generator.told[field], "auto") != 0;
+
+	for (int i = 0; i < PROCESS_NFIELDS && said; i++) {
+		const bool frame = w->kind == WAY_CAN;
+		struct config_way x;
+
+		config_way(q->c, i, false, &x);
+		if (frame ? x.kind != WAY_CAN || x.id != w->id :
+			    i == field || !have_in_common(&x, w))
+			continue;
+		interp_diag_say(q->diag, "generator.%s is in %s %u, and there "
+				"edmd %s generator.%s; where the generator "
+				"tells it", key, frame ? "frame" : "register",
+				w->id, frame ? "sends" : "writes",
+				process_name(i));
+		return refuse(q, key);
+	}
+	return 0;
+}
+
 static int check_bits(struct check *q, int field, bool told)
 {
 	struct config_way w, x;
@@ -237,20 +289,43 @@ static int check_bits(struct check *q, int field, bool told)
 				"another identifier", key, w.id);
 		return refuse(q, key);
 	}
-	return 0;
+	return told ? check_echo(q, field, &w, key) : 0;
+}
+
+static bool is_the_drives(const struct machine_config *c, uint32_t id)
+{
+	return c->backend == BACKEND_CAN402 &&
+	       strcmp(c->can402.interface, c->generator.can_interface) == 0 &&
+	       (id == (uint32_t)c->can402.gap_id ||
+		!config_frame_is_free(c, id));
+}
+
+/* All that CiA 301 gives a node has its number in the lower seven bits. */
+static bool is_the_plcs(const struct machine_config *c, uint32_t id)
+{
+	return config_has_plc(c) &&
+	       config_generator_interface(c) == GENERATOR_CAN &&
+	       strcmp(c->plc.interface, c->generator.can_interface) == 0 &&
+	       (id & 0x7f) == (uint32_t)c->plc.node;
 }
 
 static int check_id(struct check *q, const char *key, uint32_t id)
 {
-	const struct config_can402 *k = &q->c->can402;
-
-	if (q->c->backend != BACKEND_CAN402 || id == 0 ||
-	    strcmp(k->interface, q->c->generator.can_interface) != 0 ||
-	    (id != (uint32_t)k->gap_id && config_frame_is_free(q->c, id)))
+	if (id == 0)
 		return 0;
-	interp_diag_say(q->diag, "generator.%s %u, which is in use on that "
-			"bus; " CONFIG_FRAME_WANTED, key, id);
-	return refuse(q, key);
+	if (is_the_drives(q->c, id)) {
+		interp_diag_say(q->diag, "generator.%s %u, which is in use on "
+				"that bus; " CONFIG_FRAME_WANTED, key, id);
+		return refuse(q, key);
+	}
+	if (is_the_plcs(q->c, id)) {
+		interp_diag_say(q->diag, "generator.%s %u, which is between "
+				"edmd and the PLC on that bus; one whose rest "
+				"by 128 is not plc.node %g", key, id,
+				q->c->plc.node);
+		return refuse(q, key);
+	}
+	return 0;
 }
 
 static int check_ids(struct check *q, int field, bool told)
@@ -263,13 +338,30 @@ static int check_ids(struct check *q, int field, bool told)
 	       check_id(q, key_name(field, told, key, sizeof(key)), w.id);
 }
 
+/* A person's field has any value, and a way to the generator has not. */
+static int check_two_hands(struct check *q, uint32_t fields)
+{
+	for (int i = 0; i < PROCESS_NFIELDS; i++) {
+		struct config_way w;
+
+		config_way(q->c, i, false, &w);
+		if (!(fields >> i & 1) || w.kind == WAY_NONE)
+			continue;
+		interp_diag_say(q->diag, "generator.by_hand has %s, which "
+				"reaches the generator by itself; one of the "
+				"two", process_name(i));
+		return refuse(q, "by_hand");
+	}
+	return 0;
+}
+
 static int check_by_hand(struct check *q)
 {
 	char odd[CONFIG_WAY_WORD];
+	const uint32_t fields = config_hand_read(q->c->generator.by_hand, odd);
 
-	config_hand_read(q->c->generator.by_hand, odd);
 	if (!*odd)
-		return 0;
+		return check_two_hands(q, fields);
 	interp_diag_say(q->diag, "generator.by_hand has \"%s\"; of peak_a "
 			"on_us off_us polarity ignition_v iso sense pump, "
 			"those that a person sets", odd);
@@ -320,24 +412,35 @@ static bool has(const struct machine_config *c, enum config_way_kind kind)
 	return false;
 }
 
-/* What takes a round trip sets something, and does not end the sparks. */
-static int check_slow(struct check *q, enum config_way_kind kind,
-		      const char *wanted)
+/* An interface that reaches nothing is no interface. */
+static int check_reaches(struct check *q, enum config_way_kind kind,
+			 const char *wanted)
+{
+	const int interface = config_generator_interface(q->c);
+
+	if (has(q->c, kind))
+		return 0;
+	interp_diag_say(q->diag, "generator.interface is %s and it reaches no "
+			"field; peak_a = %s", config_interface_word(interface),
+			wanted);
+	return refuse(q, "interface");
+}
+
+/* One that edmd sets while it sparks as it likes has sparks with another
+ * condition than the place's. */
+static int check_spark(struct check *q)
 {
 	const int interface = config_generator_interface(q->c);
 	struct config_way spark;
 
-	if (!has(q->c, kind)) {
-		interp_diag_say(q->diag, "generator.interface is %s and it "
-				"reaches no field; peak_a = %s",
-				config_interface_word(interface), wanted);
-		return refuse(q, "interface");
-	}
 	config_way(q->c, PROCESS_SPARK, false, &spark);
-	if (spark.kind != WAY_NONE || !config_backend(q->c)->has_gap(q->c))
+	if (spark.kind != WAY_NONE || !config_generator_beside(interface) ||
+	    !config_backend(q->c)->has_gap(q->c))
 		return 0;
-	interp_diag_say(q->diag, "generator.spark reaches nothing; spark = %s",
-			"line N, or [gpio] spark: a line ends sparks at once");
+	interp_diag_say(q->diag, "generator.spark reaches nothing; spark = %s"
+			"line N, or [gpio] spark: a line ends sparks at once",
+			interface == GENERATOR_CAN ? "can ID byte N bit N, "
+			: "");
 	return refuse(q, "spark");
 }
 
@@ -352,9 +455,12 @@ static int check_modbus_at(struct check *q)
 				CONFIG_MODBUS_WANTED, g->modbus, wrong);
 		return refuse(q, "modbus");
 	}
-	if (at.serial && !(g->unit >= 1 && g->unit <= 247)) {
-		interp_diag_say(q->diag, "generator.modbus_unit %.0f on a "
-				"serial port; 1 to 247", g->unit);
+	if ((at.serial && g->unit < 1) ||
+	    (g->unit > 247 && (at.serial || g->unit < 255))) {
+		interp_diag_say(q->diag, "generator.modbus_unit %.0f %s; 1 to "
+				"247%s", g->unit, at.serial ?
+				"on a serial port" : "over TCP",
+				at.serial ? "" : ", 0 or 255");
 		return refuse(q, "modbus_unit");
 	}
 	return 0;
@@ -379,7 +485,7 @@ static int check_modbus(struct check *q)
 	if (config_generator_interface(q->c) != GENERATOR_MODBUS)
 		return 0;
 	return check_modbus_at(q) || check_modbus_silence(q) ||
-	       check_slow(q, WAY_REGISTER, WANTED_REGISTER) ? -EINVAL : 0;
+	       check_reaches(q, WAY_REGISTER, WANTED_REGISTER) ? -EINVAL : 0;
 }
 
 /* CiA 301 keeps 6E0 and what follows for itself. */
@@ -402,7 +508,7 @@ static int check_by_plc(struct check *q)
 				PULSE_NODE_MAX);
 		return refuse(q, "interface");
 	}
-	return check_slow(q, WAY_PLC, "plc");
+	return check_reaches(q, WAY_PLC, "plc");
 }
 
 /* -- Counts for the gap servo ---------------------------------------------- */
@@ -515,10 +621,12 @@ int config_check_generator(const struct machine_config *c,
 		if ((asked && (check_lines(&q, i) || check_dac(&q, i) ||
 			       check_bits(&q, i, false) ||
 			       check_ids(&q, i, false))) ||
-		    check_bits(&q, i, true) || check_ids(&q, i, true))
+		    check_bits(&q, i, true) || check_ids(&q, i, true) ||
+		    check_told(&q, i))
 			return -EINVAL;
 	}
-	return check_modbus(&q) || check_by_plc(&q) || check_counts(&q) ||
+	return check_modbus(&q) || check_by_plc(&q) || check_spark(&q) ||
+	       check_counts(&q) ||
 	       check_guard(&q, LINE_WATCHDOG, c->gpio.watchdog_by,
 			   "watchdog") ||
 	       check_guard(&q, LINE_ESTOP, c->gpio.estop_by, "estop") ?

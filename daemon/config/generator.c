@@ -66,8 +66,11 @@ static void by_itself(const struct machine_config *c, int field,
 		      struct config_way *ret)
 {
 	const int interface = config_generator_interface(c);
+	char odd[CONFIG_WAY_WORD];
 
 	*ret = (struct config_way) { .kind = WAY_NONE };
+	if (config_hand_read(c->generator.by_hand, odd) >> field & 1)
+		return;
 	if (interface == GENERATOR_CAN && !config_generator_gpio(c, field))
 		usual_frame(c, field, ret);
 	else if (interface == GENERATOR_PLC && config_plc_pulse(field) &&
@@ -106,6 +109,55 @@ void config_way(const struct machine_config *c, int field, bool told,
 		*ret = (struct config_way) { .kind = WAY_NONE };
 }
 
+static void only_in_list(struct process_delivers *d,
+			 const struct process_delivers *told, double slack)
+{
+	const struct process_delivers all = *d;
+
+	d->n = 0;
+	for (uint32_t i = 0; i < told->n; i++) {
+		const double v = told->value[i];
+		bool has = all.n == 0 && v >= all.min - slack &&
+			   v <= all.max + slack;
+
+		for (uint32_t k = 0; k < all.n; k++)
+			has = has || fabs(all.value[k] - v) <= slack;
+		if (has)
+			d->value[d->n++] = v;
+	}
+	d->there = d->n > 0;
+}
+
+static void only_up_to(struct process_delivers *d, double most)
+{
+	uint32_t n = 0;
+
+	for (uint32_t i = 0; i < d->n; i++)
+		if (d->value[i] <= most)
+			d->value[n++] = d->value[i];
+	d->there = d->n ? n > 0 : d->min <= most;
+	d->n = n;
+	d->max = fmin(d->max, most);
+}
+
+/* What it has no word for would never be in force. */
+static void only_told(const struct machine_config *c, int field,
+		      const struct config_way *asked,
+		      struct process_delivers *d)
+{
+	struct config_way told;
+
+	if (field < INTERP_NGENERATOR)
+		config_way(c, field, true, &told);
+	if (field >= INTERP_NGENERATOR || told.kind == WAY_NONE || !d->there)
+		return;
+	if (told.gives.n)
+		only_in_list(d, &told.gives, asked->kind == WAY_DAC ? 0 :
+					     asked->scale / 2);
+	else
+		only_up_to(d, told.gives.max);
+}
+
 void config_delivers(const struct machine_config *c, int field,
 		     struct process_delivers *ret)
 {
@@ -116,6 +168,7 @@ void config_delivers(const struct machine_config *c, int field,
 	*ret = w.gives;
 	if (config_hand_read(c->generator.by_hand, odd) >> field & 1)
 		config_way_all(field, true, ret);
+	only_told(c, field, &w, ret);
 }
 
 static void add_id(const struct config_way *w, uint16_t *id, uint32_t *n)

@@ -48,7 +48,8 @@ static bool number(const char *word, double *ret)
 	char *end;
 
 	*ret = strtod(word, &end);
-	return end != word && *end == '\0' && isfinite(*ret);
+	return end != word && *end == '\0' && isfinite(*ret) &&
+	       !strpbrk(word, "xX");
 }
 
 /* On or off; polarity is one of these too. */
@@ -153,7 +154,7 @@ static const char *give_codes(struct config_way *w, int field)
 			return "makes a value out of the field's range";
 		give(&w->gives, v);
 	}
-	return NULL;
+	return w->gives.n ? NULL : "makes no value but 0, which is none";
 }
 
 static const char *read_way_lines(struct words *w, int field,
@@ -476,7 +477,7 @@ uint32_t config_hand_read(const char *text, char odd[CONFIG_WAY_WORD])
 	uint32_t fields = 0;
 
 	*odd = '\0';
-	while (next(&w) && strcmp(w.word, "none") != 0) {
+	while (strcmp(text, "none") != 0 && next(&w)) {
 		int i = 0;
 
 		while (i < PROCESS_SPARK && strcmp(w.word, process_name(i)))

@@ -352,7 +352,12 @@ static const struct refusal refusals[] = {
 	{ DAC "polarity = dac iio:device0 voltage0 to 10\n", 5, 0,
 	  "is of a field that is on or off", "dac DEVICE" },
 	{ DAC "told_peak_a = dac iio:device0 voltage0 to 10\n", 5, 0,
-	  "is told by a converter's output", "dac DEVICE" },
+	  "is told by a converter's output", "none" },
+	/* It would spark as it likes. */
+	{ ADC_MACHINE "[gap]\nsource = voltage\n"
+	  "[generator]\ninterface = can\n"
+	  "peak_a = can 1010 byte 0 scale 0.1\n", 0, 0,
+	  "generator.spark reaches nothing", "can ID byte N bit N, line N" },
 	{ DAC "peak_a = dac ad5624r voltage0 to 10\n"
 	  "ignition_v = dac ad5624r voltage0 scale 30 to 10\n", 6, 0,
 	  "generator.ignition_v and generator.peak_a are both ad5624r voltage0",
@@ -372,6 +377,38 @@ static const struct refusal refusals[] = {
 	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
 	  "peak_a = plc\n", 5, 0, "is by the PLC, and the interface is not plc",
 	  "lines 20 21 26" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "off_us = lines 5 6 codes 2 4 8 16\nby_hand = on_us off_us\n", 6, 0,
+	  "generator.by_hand has off_us, which reaches the generator",
+	  "one of the two" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 10 scale 0.1\n"
+	  "told_peak_a = none\non_us = register 11\n"
+	  "told_on_us = register 10\n", 9, 0,
+	  "generator.told_on_us is in register 10, and there edmd writes "
+	  "generator.peak_a", "where the generator tells it" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
+	  "can_id = 100\ntold_iso = can 100 byte 0 bit 7\n", 6, 0,
+	  "generator.told_iso is in frame 100, and there edmd sends",
+	  "where the generator tells it" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "on_us = lines 5 6 codes 0 0 0 0\n", 5, 0,
+	  "makes no value but 0, which is none", "codes 2 4 8 16" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
+	  "peak_a = lines 5 6 weights 1 0x2\n", 5, 0,
+	  "has a weight that is not above 0", "weights 3 6 12" },
+	{ "[machine]\nbackend = null\n[generator]\nby_hand = none on_us\n",
+	  4, 0, "generator.by_hand has \"none\"", "peak_a on_us off_us" },
+	{ MODBUS "modbus = 127.0.0.1:502\nmodbus_unit = 248\n"
+	  "peak_a = register 1\n", 6, 0,
+	  "generator.modbus_unit 248 over TCP", "1 to 247, 0 or 255" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 10 codes 1 2 3\n"
+	  "told_peak_a = input 3 codes 5 6 7\n", 7, 0,
+	  "generator.told_peak_a tells no value that generator.peak_a can",
+	  "the same values" },
+	{ "[machine]\nbackend = null\n[plc]\ninterface = can0\nnode = 32\n"
+	  "[generator]\ninterface = can\ncan_id = 416\n", 8, 0,
+	  "generator.can_id 416, which is between edmd and the PLC",
+	  "rest by 128 is not plc.node 32" },
 	{ "[machine]\nbackend = null\n[generator]\nby_hand = on_us amps\n", 4,
 	  0, "generator.by_hand has \"amps\"", "peak_a on_us off_us" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"

@@ -474,6 +474,8 @@ static void its_own_fault_is_trouble_until_it_is_gone_and_reset(void **state)
 
 /* -- What of a condition is delivered -------------------------------------- */
 
+#define BY_LINES	"spark = 9\nwatchdog_by = its own\n" \
+	"estop_by = its own\n[generator]\ninterface = lines\n"
 #define BY_PLC	"spark = 9\nwatchdog_by = its own\nestop_by = its own\n" \
 	"[plc]\ninterface = can1\n[generator]\ninterface = plc\n"
 #define MODBUS	"spark = 9\nwatchdog_by = its own\nestop_by = its own\n" \
@@ -509,21 +511,30 @@ static const struct {
 	  INTERP_TECH_OFF_US, 6554, "C1: off_us 6554 us", "0.1 to 6553.4 us" },
 	{ "[generator]\ninterface = can\ncan_id = 500\n",
 	  INTERP_TECH_IGNITION_V, 180, "ignition_v 180 V", "" },
-	{ "[generator]\ninterface = lines\n"
+	{ BY_LINES
 	  "peak_a = lines 20 21 26 weights 3 6 12\n",
 	  INTERP_TECH_PEAK_A, 7, "", "" },
-	{ "[generator]\ninterface = lines\n"
+	{ BY_LINES
 	  "peak_a = lines 20 21 26 weights 3 6 12\n",
 	  INTERP_TECH_PEAK_A, 2, "peak_a 2 A", "3 6 9 12 15 18 21 A" },
-	{ "[generator]\ninterface = lines\non_us = lines 20 21 codes 2 4 8\n",
+	{ BY_LINES "on_us = lines 20 21 codes 2 4 8\n",
 	  INTERP_TECH_ON_US, 20, "on_us 20 us", "2 4 8 us" },
-	{ "[generator]\ninterface = lines\npolarity = line 20\n",
+	{ BY_LINES "polarity = line 20\n",
 	  INTERP_TECH_POLARITY, -1, "", "" },
 	{ MODBUS, INTERP_TECH_PEAK_A, 6, "", "" },
 	{ MODBUS, INTERP_TECH_PEAK_A, 26, "peak_a 26 A", "0.1 to 25.5 A" },
 	{ MODBUS, INTERP_TECH_ON_US, 8, "", "" },
 	{ MODBUS, INTERP_TECH_ON_US, 40, "on_us 40 us", "2 4 8 16 us" },
 	{ MODBUS, INTERP_TECH_OFF_US, 20, "", "" },
+	/* What it cannot tell would never be in force. */
+	{ MODBUS "told_off_us = input 9 bits 8\n", INTERP_TECH_OFF_US, 256,
+	  "off_us 256 us", "1 to 255 us" },
+	{ MODBUS "told_peak_a = input 9 codes 3 6 50\n", INTERP_TECH_PEAK_A, 7,
+	  "peak_a 7 A", "3 6 A" },
+	{ MODBUS "told_on_us = input 9 codes 2 4 9 16\n", INTERP_TECH_ON_US, 9,
+	  "", "" },
+	{ MODBUS "told_on_us = input 9 bits 3\n", INTERP_TECH_ON_US, 8,
+	  "on_us 8 us", "2 4 us" },
 	{ MODBUS, INTERP_TECH_IGNITION_V, 180, "", "" },
 	{ MODBUS, INTERP_TECH_POLARITY, -1, "", "" },
 	{ MODBUS, INTERP_TECH_ISO, 1, "iso 1", "[generator] iso" },
@@ -567,8 +578,8 @@ static void lines_have_the_code_of_the_value(void **state)
 	struct config_way w;
 
 	(void)state;
-	assert_int_equal(read_text(LINES_MACHINE "[generator]\n"
-		"interface = lines\npeak_a = lines 20 !21 26 weights 3 6 12\n"
+	assert_int_equal(read_text(LINES_MACHINE BY_LINES
+		"peak_a = lines 20 !21 26 weights 3 6 12\n"
 		"on_us = lines 22 23 codes 2 4 8 16\n", &c, &d), 0);
 	config_way(&c, INTERP_TECH_PEAK_A, false, &w);
 	assert_int_equal(generator_code(&w, 15), 5);
