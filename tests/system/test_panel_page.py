@@ -416,7 +416,7 @@ def test_technology_is_saved_on_the_host_and_comes_back(p, page):
     file = p.folder / "copper-steel.tech"
     was = file.read_text()
     show(page, "tech")
-    cell = page.get_by_label("C120 servo_v")
+    cell = page.get_by_label("C120 mean gap voltage to hold")
     before = cell.input_value()
     cell.fill("31")
     cell.press("Enter")
