@@ -93,6 +93,12 @@ def test_a_part_from_its_error_to_the_history(p, page):
     expect(page.locator(".refusal")).to_contain_text("Line 3, column 7")
     expect(page.locator(".refusal")).to_contain_text("Q77")
     expect(page.locator(".gutter .bad")).to_have_text("3")
+    # The numbers stand beside their lines.
+    tops = page.locator(".gutter pre, .editor textarea").evaluate_all(
+        "all => all.map(e => e.getBoundingClientRect().top + "
+        "parseFloat(getComputedStyle(e).paddingTop) + "
+        "parseFloat(getComputedStyle(e).borderTopWidth))")
+    assert abs(tops[0] - tops[1]) < 1
     expect(page.locator("#send")).to_have_attribute("aria-disabled", "true")
 
     # Mended where it stands: it is checked by itself.

@@ -3,7 +3,7 @@
  * bends.h - how much acceleration a slow move may have where axes bend
  *
  * What an axis may do is shared between its bend, beside the path or with it,
- * and speeding up (compile/speed/beside.c, along.c).  a_mm_s2 and j_mm_s3 of a
+ * and speeding up (compile/speed/along.c).  a_mm_s2 and j_mm_s3 of a
  * segment are what is left at the highest speed that can be come to there.  A
  * move that is slower may have more:
  *

@@ -12,7 +12,7 @@
  *	     | conditions[nconds] | escapes[nescapes] | couples[ncouples]
  *	     | bits[nbits] | curves[ncurves] | pieces[npieces]
  *	     | stops[nstops] | numbers[nnumbers] | bends[nbends]
- *	     | runs[nruns]
+ *	     | runs[nruns] | origins[norigins]
  *
  * Bits are strings of whole words, with one bit for each pulse.  A line by
  * min-switch has one string for each of its pairs of axes, in the order of
