@@ -82,7 +82,8 @@ COMPILE	:= $(wildcard libinterp/compile/*/*.c)
 # Built into the reader, in this order: a base is in front of what begins from it.
 DIALECTS := generic linuxcnc heekscnc fanuc-sinker sodick-sinker \
 	    charmilles-robofil charmilles-cmd skd2 sodick-wire chmer \
-	    fanuc-wire mastercam-wire makino charmilles-robofil-440 agie \
+	    fanuc-wire mastercam-wire makino mitsubishi-wire \
+	    charmilles-robofil-440 agie \
 	    agievision 3b 4b
 MODEL	:= $(wildcard libinterp/model/*.c)
 INTERP	:= $(CORE) $(COMPILE) $(MODEL)
@@ -150,7 +151,7 @@ INC_sign	= -Imessages/sign -Icommon
 INC_client	= -Iclients/client -Icommon $(WORDS_H) -Imessages/sign -I$(B)/messages
 INC_sim		= -Iclients/sim -Icommon -Iclients/plot $(INC_virtual) $(INC_compiling) $(MODEL_H)
 INC_ctl		= -Iclients/ctl -Icommon -Idaemon/config -Idaemon/io -Iclients/plot -Idaemon/shm $(WORDS_H) $(CORE_H) $(MODEL_H) $(INC_client)
-INC_dds		= -Iclients/dds -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
+INC_dds		= -Iclients/dds $(INC_client) -Icommon -Idaemon/shm $(WORDS_H) -Idaemon/config $(CORE_H) -I$(B)/messages
 INC_panel	= -Iclients/panel -Icommon $(WORDS_H) $(INC_values) -Iclients/client -Imessages/sign
 INC_libinterp	= $(INC_compile) $(INC_model)
 INC_plan	= -Iclients/plan -Icommon $(INC_config) $(INC_compiling)
@@ -167,8 +168,8 @@ TRIED_A	 := $(B)/tests-tried.a
 COMMON_A := $(B)/common.a
 INTERP_A := $(COMPILE_A) $(MODEL_A) $(CORE_A) $(COMMON_A)
 WORDS_O	 := $(call obj,$(WORDS))
-# Prints, which the cycle must not.
-TEXT_O	 := $(B)/daemon/words/process_text.o
+# Words for people, which the cycle must not make.
+TEXT_O	 := $(B)/daemon/words/process_text.o $(B)/daemon/words/cia402.o
 RT_O	 := $(call obj,$(RT)) $(filter-out $(TEXT_O),$(WORDS_O))
 IO_O	 := $(call obj,$(IO))
 SIM_IO_O := $(filter-out %/can402_lines.o %/gpio.o %/gpio_open.o %/gpio_axes.o %/quadrature.o %/encoder.o %/adc.o %/edges.o %/gpiod1.o %/gpiod2.o %/chips.o %/generator_lines.o %/generator_modbus.o %/generator_open.o,$(IO_O))
@@ -330,11 +331,11 @@ $(B)/edmd-jobs: $(call obj,$(JOBS) $(VALUES) $(LOGGER)) $(SIGN_O) $(SHM_O) $(VIR
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -llcm -lsodium -ljansson -lz -lncursesw -ltinfo $(LIBGPIOD) -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c watch.c topic.c tool.c)) $(SHM_O) $(CONFIG_O) $(DDS_O) $(CORE_A) $(COMMON_A)
-	$(call link,-lddsc -linih -lm)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c reports.c watch.c topic.c tool.c) $(CLIENT)) $(SIGN_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(DDS_O) $(CORE_A) $(COMMON_A)
+	$(call link,-lddsc -linih -llcm -lsodium -ljansson -lm)
 
-$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c table.c topic.c tool.c)) $(DDS_O) $(COMMON_A)
-	$(call link,-lddsc -ljansson -lm)
+$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c hall.c ledger.c sink.c table.c topic.c tool.c)) $(DDS_O) $(COMMON_A)
+	$(call link,-lddsc -ljansson -lsqlite3 -lm)
 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(VALUES) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
 	$(call link,-lwebsockets -lssl -linih -llcm -lsodium -ljansson -lsystemd -lm)
@@ -381,6 +382,7 @@ $(B)/unit/test_frames: UNIT_LIBS = -lssl
 # The sockets and the lines of an encoder are the test's own.
 $(B)/unit/test_can_queue: UNIT_LIBS = -Wl,--wrap=can_socket_open
 # Looks at a program are counted.
+$(B)/unit/test_plc_link: UNIT_LIBS = -Wl,--wrap=can_socket_send
 $(B)/unit/test_ground: UNIT_LIBS = -Wl,--wrap=interp_program_any_at
 $(B)/unit/test_encoder: UNIT_LIBS = $(foreach f,events get release,-Wl$(,)--wrap=lines_$f)
 
@@ -708,6 +710,7 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 	$(Q)docs/pictures/process $(B)
 	$(Q)docs/pictures/curves $(B)
 	$(Q)docs/pictures/demo $(B)
+	$(Q)docs/pictures/wiring
 
 # What many browsers cost, and how smoothly a long path is drawn: figures.
 panel-load: all panel
@@ -734,7 +737,8 @@ FUZZ_RUNS ?= -1
 FUZZ_SEED ?= 0
 FUZZ	:= $(patsubst tests/fuzz/%.c,%,$(wildcard tests/fuzz/fuzz_*.c))
 # Not its large rings: they cost milliseconds, and all that is made of them.
-SEEDS_fuzz_nc	  = $(filter-out %/identify.ngc,$(wildcard examples/*.ngc))
+SEEDS_fuzz_nc	  = $(filter-out %/identify.ngc,$(wildcard examples/*.ngc)) \
+		    tests/fuzz/corpus_nc/*
 SEEDS_fuzz_threeb = tests/fuzz/corpus_threeb/*
 SEEDS_fuzz_tech	  = examples/*.tech examples/*.enc
 SEEDS_fuzz_dialect = dialects/*.ini
@@ -747,7 +751,8 @@ run-fuzz_%: $(B)/fuzz_%
 	$(Q)mkdir -p $(B)/corpus_$*
 	$(Q)$(if $(SEEDS_fuzz_$*),cp $(SEEDS_fuzz_$*) $(B)/corpus_$*/)
 	$(Q)$< -seed=$(FUZZ_SEED) -runs=$(FUZZ_RUNS) \
-		-max_total_time=$(or $(FUZZ_MOST_S),$(FUZZ_S)) -max_len=4096 $(FUZZ_MORE) -verbosity=0 \
+		-max_total_time=$(or $(FUZZ_MOST_S),$(FUZZ_S)) -max_len=4096 $(FUZZ_MORE) \
+		-artifact_prefix=$(B)/crashed_$*- -verbosity=0 \
 		-print_final_stats=1 $(B)/corpus_$* 2>$<.log || \
 		{ tail -n 40 $<.log; exit 1; }
 	$(Q)sed -n 's/^stat::number_of_executed_units: */  FUZZ    $*: runs /p' $<.log
@@ -841,7 +846,7 @@ BASH_COMPLETION = share/bash-completion/completions
 ZSH_COMPLETION = share/zsh/site-functions
 
 EXAMPLES = $(wildcard examples/*.ini examples/*.ngc examples/*.tech \
-	   examples/*.enc examples/*.maps)
+	   examples/*.enc examples/*.maps examples/*.st)
 SHARED	= messages/edm.lcm messages/edm.idl messages/edmd.eds \
 	  messages/edmd.dbc $(SHEETS) systemd/edmd-can.conf
 PAPERS	= README.md CHANGELOG.md LICENSE $(wildcard docs/*.md)

@@ -24,6 +24,20 @@ int cmdline_refuse(const char *program, const char *what, const char *value,
 	return EX_USAGE;
 }
 
+const char *cmdline_pairs(const char *(*name)(int i),
+			  const char *const value[], char *buf, size_t size)
+{
+	size_t n = 0;
+
+	buf[0] = '\0';
+	for (int i = 0; name(i) && n < size; i++)
+		if (value[i])
+			n += (size_t)snprintf(buf + n, size - n, "%s%s=%s",
+					      n ? " " : "", name(i),
+					      value[i] + (value[i][0] == ' '));
+	return n < size ? buf : NULL;
+}
+
 static int refuse_value(const struct cmdline *o, const char *name,
 			const char *text, const char *wanted)
 {

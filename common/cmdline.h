@@ -74,6 +74,15 @@ bool cmdline_has(const struct cmdline *o, const struct cmdline_given *g,
 		 const char *name);
 
 /**
+ * cmdline_pairs() - "NAME=VALUE" of those options @name(0), @name(1), ... that
+ * have a @value, a blank between.
+ *
+ * Return: @buf, or NULL: they do not fit.
+ */
+const char *cmdline_pairs(const char *(*name)(int i),
+			  const char *const value[], char *buf, size_t size);
+
+/**
  * cmdline_refuse() - print a refusal. Return: the exit code for wrong usage.
  */
 int cmdline_refuse(const char *program, const char *what, const char *value,

@@ -27,6 +27,20 @@ struct stamped {
 	size_t slot_bytes;
 };
 
+/** STAMPED_ROW() - members of a struct: a row of slots for records of @type,
+ *  and the number of records so far. */
+#define STAMPED_ROW(type, row, so_far, count) \
+	struct { \
+		uint64_t stamp; \
+		type record; \
+	} row[count]; \
+	uint64_t so_far
+
+/** STAMPED() - of a row of slots, and of the number of records so far. */
+#define STAMPED(row, so_far) \
+	((struct stamped) { (row), &(so_far), sizeof(row) / sizeof((row)[0]), \
+			    sizeof((row)[0]) })
+
 /** stamped_put() - the next record. */
 void stamped_put(const struct stamped *r, const void *record);
 

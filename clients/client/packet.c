@@ -63,6 +63,7 @@ uint8_t *packet_chunk(const struct packet_from *f, const struct talk_chunk *c,
 		.offset = c->offset, .hold = c->hold,
 		.electrode = c->electrode,
 		.from_line = c->from_line, .from_mm = c->from_mm,
+		.setting = lent(c->setting ? c->setting : ""),
 		.size = c->size, .data = (uint8_t *)(uintptr_t)c->data,
 	};
 

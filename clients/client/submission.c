@@ -71,7 +71,7 @@ static bool send_chunk(struct submission *j, int i)
 		.chunk = i, .chunks = j->chunks, .offset = (int64_t)at,
 		.hold = j->text.hold, .from_line = j->text.from_line,
 		.from_mm = j->text.from_mm, .electrode = j->text.electrode,
-		 .data = j->text.text + at,
+		.setting = j->text.setting, .data = j->text.text + at,
 		.size = left < TALK_CHUNK_MAX ? (int)left : TALK_CHUNK_MAX,
 	};
 

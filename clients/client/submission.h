@@ -28,6 +28,8 @@ struct submission_text {
 	bool hold;			/* load it, but wait for "start" */
 	int electrode;			/* begin with this one; 0: with the one
 					 * in the holder */
+	const char *setting;		/* interp/setting.h; NULL: nothing; lent
+					 * as the text is */
 	int from_line;			/* begin at this line; 0: from_mm */
 	double from_mm;			/* begin there along the path; 0: at the
 					 * beginning */

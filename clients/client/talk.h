@@ -90,6 +90,7 @@ struct talk_chunk {
 	int from_line;
 	double from_mm;
 	int electrode;
+	const char *setting;		/* NULL is "" */
 	int size;
 	const char *data;
 };

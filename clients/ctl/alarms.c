@@ -116,6 +116,9 @@ int ctl_alarms(struct ctl *c)
 		err = print_json(s, rows);
 	} else {
 		print_now(s);
+		if (strcmp(s->daemon, "ok") == 0 &&
+		    strcmp(s->fault, "none") != 0)
+			ctl_drives_ill(c);
 		print_past(rows);
 	}
 	json_decref(rows);

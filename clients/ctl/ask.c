@@ -377,6 +377,8 @@ static void print_one(json_t *job)
 	       ctl_number_of(job, "jumps"), ctl_number_of(job, "retracts"),
 	       ctl_number_of(job, "shorts"), ctl_text_of(job, "sha256"));
 	history_print(job);
+	if (*ctl_text_of(job, "setting"))
+		printf("set        %s\n", ctl_text_of(job, "setting"));
 	if (*ctl_text_of(job, "tech_sha256"))
 		printf("table      %s\n", ctl_text_of(job, "tech_sha256"));
 	json_array_foreach(json_object_get(job, "notes"), i, note)

@@ -11,6 +11,8 @@
 #include "mean.h"
 #include "talk.h"
 
+#include "interp/setting.h"
+
 #include <jansson.h>
 
 #define CTL_WORDS_MAX	14		/* a verb and what follows it */
@@ -25,9 +27,11 @@ struct ctl {
 	int from_line;			/* 0: not given */
 	double from_mm;			/* 0: not given */
 	double electrode;		/* submit: its number; 0: not given */
+	const char *set[INTERP_NSETS];	/* submit; NULL: not given */
 	unsigned int every;		/* record: cycles; 0: not given */
 	const char *plot;
 	const char *pulses;		/* doctor: CHIP:LINE */
+	const char *fix, *root;		/* doctor: a machine file; a folder */
 	bool csv;			/* history */
 	const char *picture;		/* history: an SVG file */
 	bool until_end;
@@ -58,6 +62,14 @@ int ctl_new_machine(struct ctl *c);
 int ctl_offset(struct ctl *c);
 int ctl_tech(struct ctl *c);
 int ctl_generator(struct ctl *c);
+int ctl_drive(struct ctl *c);
+
+/** ctl_scope() - how far @axis is behind its targets, for @seconds, or until
+ *  Ctrl-C if that is NULL. */
+int ctl_scope(struct ctl *c, const char *axis, const char *seconds);
+
+/** ctl_drives_ill() - a line for each drive in which something is wrong. */
+void ctl_drives_ill(struct ctl *c);
 int ctl_command(struct ctl *c);
 int ctl_start(struct ctl *c);
 int ctl_resume(struct ctl *c);
@@ -70,6 +82,19 @@ int ctl_done(struct ctl *c);
 int ctl_override(struct ctl *c);
 int ctl_jog(struct ctl *c);
 int ctl_jog_on(struct ctl *c);
+
+/* An axis that is to move as long as @more says so; NULL: until Ctrl-C. */
+struct ctl_press {
+	const char *axis;
+	double mm_s;
+	bool (*more)(void *arg);
+	void *arg;
+};
+
+/** ctl_press() - Return: 0; else a code, and @said has why it does not move. */
+int ctl_press(struct ctl *c, const struct ctl_press *asked, char *said,
+	      size_t size);
+int ctl_commission(struct ctl *c);
 int ctl_home(struct ctl *c);
 int ctl_place(struct ctl *c);
 int ctl_alarms(struct ctl *c);

@@ -3,8 +3,8 @@
  * doctor.c - what this host has and lacks, and the command that helps
  *
  * There is one function for each thing.  It says what it found and judges it.
- * Nothing is changed.  The limits are those of a living edmd, or else those of
- * this process.
+ * Only --fix changes something.  The limits are those of a living
+ * edmd, or else those of this process.
  */
 #include "ctl.h"
 #include "doctor_rt.h"
@@ -394,9 +394,10 @@ int ctl_doctor(struct ctl *c)
 	json_t *rows = json_array();
 	int lacking = 0;
 
-	if (c->pulses) {
+	if (c->pulses || c->fix) {
 		json_decref(rows);
-		return ctl_pulses(c->pulses);
+		return c->pulses ? ctl_pulses(c->pulses) :
+		       doctor_fix(&(struct doctor_fix) { c->fix, c->root });
 	}
 	meet(&h);
 	for (size_t i = 0; i < NTHINGS; i++) {

@@ -38,4 +38,16 @@ doctor_rt_fn doctor_rt_throttle;
  */
 doctor_rt_fn doctor_rt_irqs;
 
+/* A host that is to be set up. */
+struct doctor_fix {
+	const char *file;		/* of its machine */
+	const char *root;		/* files lie below this; NULL: "" */
+};
+
+/**
+ * doctor_fix() - write what edmd's threads need into units and into the kernel,
+ * and print the rest.  Return: an exit code.
+ */
+int doctor_fix(const struct doctor_fix *asked);
+
 #endif /* CTL_DOCTOR_RT_H */

@@ -20,6 +20,8 @@ struct walk {
 	struct ctl *ctl;
 	struct line line;
 	size_t steps, done, odd, in_row;
+	const char *field;		/* that it walks; "": none */
+	bool kept;			/* one is not as it was before */
 };
 
 static bool is_true(json_t *o, const char *key)
@@ -179,7 +181,7 @@ static int try(struct ctl *c, const char *field, double value)
 {
 	struct talk_answer a;
 	const int err = ctl_ask(c, &(struct talk_question) {
-		.verb = "generator-set", .text = field, .arg = value,
+		.verb = "generator-try", .text = field, .arg = value,
 	}, &a);
 
 	if (err == 0)
@@ -190,6 +192,13 @@ static int try(struct ctl *c, const char *field, double value)
 static bool same(double a, double b)
 {
 	return fabs(a - b) <= 1e-6 * fmax(fabs(a), fabs(b));
+}
+
+/* What is asked is that; NAN: nothing. */
+static bool is_asked(json_t *f, double value)
+{
+	return isnan(value) ? !json_is_number(json_object_get(f, "asked")) :
+			      same(ctl_number_of(f, "asked"), value);
 }
 
 /* Wait until the generator has it, or until it is late.  @ret: as it is
@@ -210,78 +219,67 @@ static int settle(struct ctl *c, size_t at, double value, json_t **ret,
 			return err;
 		f = json_array_get(json_object_get(o, "fields"), at);
 		late_s = ctl_number_of(o, "confirm_s") + MORE_S;
-		*ret_has = is_true(o, "in_force") &&
-			   same(ctl_number_of(f, "asked"), value);
+		*ret_has = is_true(o, "in_force") && is_asked(f, value);
 	} while (!*ret_has && talk_now_s() - from_s < late_s);
 	*ret = o;
 	return 0;
 }
 
-static void tell_odd(struct walk *w, json_t *o, size_t at, double value)
+static int tell_odd(struct walk *w, json_t *o, size_t at, double value)
 {
 	json_t *f = json_array_get(json_object_get(o, "fields"), at);
 	char asked[24], told[24];
 
 	number_text(asked, f, "asked");
 	number_text(told, f, "told");
-	w->odd++;
 	line_end(&w->line);
-	printf("%s %g %s: asked %s, told %s\n", ctl_text_of(f, "name"), value,
+	if (!is_asked(f, value)) {
+		fprintf(stderr, "edmctl: generator walk: %s %g %s: somebody "
+			"else asks for %s; one who tries it at a time\n",
+			w->field, value, ctl_text_of(f, "unit"), asked);
+		return EX_TEMPFAIL;
+	}
+	w->odd++;
+	printf("%s %g %s: asked %s, told %s\n", w->field, value,
 	       ctl_text_of(f, "unit"), asked, told);
+	return 0;
 }
 
 static int step(struct walk *w, json_t *f, size_t at, double value)
 {
-	const char *name = ctl_text_of(f, "name");
 	char text[80];
 	bool has = false;
 	json_t *o = NULL;
-	int err = try(w->ctl, name, value);
+	int err = try(w->ctl, w->field, value);
 
 	if (err == 0)
 		err = settle(w->ctl, at, value, &o, &has);
 	if (err == 0 && !has)
-		tell_odd(w, o, at, value);
+		err = tell_odd(w, o, at, value);
 	w->in_row = has ? 0 : w->in_row + 1;
 	json_decref(o);
 	w->done++;
 	snprintf(text, sizeof(text), "%zu of %zu  %s %g %s", w->done, w->steps,
-		 name, value, ctl_text_of(f, "unit"));
+		 w->field, value, ctl_text_of(f, "unit"));
 	if (err == 0 && !w->ctl->json)
 		line_bar(&w->line, (double)w->done / (double)w->steps, text);
 	return err;
 }
 
-static bool reaches(json_t *f, double value)
-{
-	json_t *values = json_object_get(f, "values"), *v;
-	size_t i;
-
-	json_array_foreach(values, i, v)
-		if (json_number_value(v) == value)
-			return true;
-	return json_array_size(values) == 0 &&
-	       value >= ctl_number_of(f, "min") &&
-	       value <= ctl_number_of(f, "max");
-}
-
-/* What nobody asks for stays as it was asked last: so that is what it told
- * before. */
+/* edmd asks for what was set, or for what it told before. */
 static int give_back(struct walk *w, json_t *f, size_t at)
 {
-	const double told = ctl_number_of(f, "told");
-	json_t *o = NULL;
-	bool has;
-	int err = 0;
+	json_t *set = json_object_get(f, "asked"), *o = NULL;
+	bool has = false;
+	int err = try(w->ctl, w->field, NAN);
 
-	if (!json_is_number(json_object_get(f, "asked")) &&
-	    json_is_number(json_object_get(f, "told")) && reaches(f, told)) {
-		err = try(w->ctl, ctl_text_of(f, "name"), told);
-		if (err == 0)
-			err = settle(w->ctl, at, told, &o, &has);
-		json_decref(o);
-	}
-	return err ? err : try(w->ctl, ctl_text_of(f, "name"), NAN);
+	if (err == 0)
+		err = settle(w->ctl, at, json_is_number(set) ?
+			     json_number_value(set) : NAN, &o, &has);
+	json_decref(o);
+	w->field = "";
+	w->kept = w->kept || !has;
+	return err;
 }
 
 static bool gives_up(const struct walk *w)
@@ -293,6 +291,7 @@ static int walk_field(struct walk *w, json_t *f, size_t at)
 {
 	int err = 0;
 
+	w->field = ctl_text_of(f, "name");
 	for (size_t i = 0; err == 0 && i < steps_of(f) && !gives_up(w); i++)
 		if (is_taken(w->ctl, f, i))
 			err = step(w, f, at, value_at(f, i));
@@ -308,31 +307,34 @@ static void on_back(void *arg, int err, const struct talk_ack *a)
 
 static int walk_end(struct walk *w, int err)
 {
+	const char *back_again = w->kept ? "it is not as it was before" :
+					   "all is as it was before";
 	const struct talk_question back = {
-		.verb = "generator-set", .arg = NAN,
+		.verb = "generator-try", .text = w->field, .arg = NAN,
 	};
 
 	/* Interrupted, nobody waits for the answer. */
 	if (talk_interrupted())
 		talk_send(w->ctl->talk, &back, w->ctl->timeout_s, on_back,
 			  NULL);
-	else if (err != EX_UNAVAILABLE && try(w->ctl, "", NAN) == 0 && err)
-		fprintf(stderr, "edmctl: generator walk: not at its end; all "
-			"is as it was before\n");
+	else if (err != EX_UNAVAILABLE && err &&
+		 (!*w->field || try(w->ctl, w->field, NAN) == 0))
+		fprintf(stderr, "edmctl: generator walk: not at its end; what "
+			"it tried is taken back\n");
 	if (err)
 		return err;
 	if (w->ctl->json)
 		printf("{\"steps\": %zu, \"odd\": %zu}\n", w->done, w->odd);
 	else
-		printf("%zu of %zu steps%s, %zu not told as asked; all is as "
-		       "it was before\n", w->done, w->steps, gives_up(w) ?
-		       ", the last ones all odd" : "", w->odd);
+		printf("%zu of %zu steps%s, %zu not told as asked; %s\n",
+		       w->done, w->steps, gives_up(w) ?
+		       ", the last ones all odd" : "", w->odd, back_again);
 	return w->odd ? 1 : 0;
 }
 
 static int walk(struct ctl *c)
 {
-	struct walk w = { .ctl = c };
+	struct walk w = { .ctl = c, .field = "" };
 	json_t *o = NULL, *fields, *f;
 	size_t at;
 	int err = ask(c, &o);
@@ -354,8 +356,9 @@ static int walk(struct ctl *c)
 		if (err == 0 && is_walked(f) && !gives_up(&w))
 			err = walk_field(&w, f, at);
 	line_end(&w.line);
+	err = walk_end(&w, err);
 	json_decref(o);
-	return walk_end(&w, err);
+	return err;
 }
 
 int ctl_generator(struct ctl *c)

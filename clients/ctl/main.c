@@ -5,8 +5,11 @@
 #include "ctl.h"
 
 #include "cmdline.h"
+#include "faults.h"
 #include "names.h"
 #include "nearest.h"
+
+#include "interp/tech.h"
 
 #include <math.h>
 #include <sodium.h>
@@ -67,7 +70,8 @@ struct verb {
 /* clang-format off */
 static const struct verb verbs[] = {
 	{ "submit", "FILE", ctl_submit, 1, 1, false, 
-	  "name id hold wait from-line from-place electrode",
+	  "name id hold wait from-line from-place electrode taper "
+	  "wire-offset scale turn mirror plane second-plane",
 	  "send a job of NC code; - is standard input" },
 	{ "queue", "", ctl_queue, 0, 0, false, "",
 	  "print the loaded job and those that wait" },
@@ -117,7 +121,7 @@ static const struct verb verbs[] = {
 	  "print the faults, why they came and what clears them" },
 	{ "faults", "[FAULT]", ctl_faults, 1, 0, true, "",
 	  "print what a fault, or each, means and what clears it" },
-	{ "doctor", "", ctl_doctor, 0, 0, false, "pulses",
+	{ "doctor", "", ctl_doctor, 0, 0, false, "pulses fix root",
 	  "print what this host lacks, and the command that helps" },
 	{ "watch", "", ctl_watch, 0, 0, false, "once line",
 	  "show the machine while it runs, until q or Ctrl-C" },
@@ -144,13 +148,19 @@ static const struct verb verbs[] = {
 	  "change the technology table on the host; its versions" },
 	{ "generator", "[set FIELD VALUE|walk]", ctl_generator, 3, 0, false,
 	  "every", "what the generator is asked for and tells; try it" },
+	{ "drive", "[list|watch|emcy|scope X|get X OBJECT|set X OBJECT N|store X]",
+	  ctl_drive, CTL_WORDS_MAX - 1, 0, false, "",
+	  "how the drives of a bus are; their objects and emergencies" },
 	{ "new-machine", "FILE", ctl_new_machine, 1, 1, true, "",
 	  "ask a few questions, and write a machine file" },
+	{ "commission", "FILE [again STEP]", ctl_commission, 3, 1, false, "",
+	  "walk a new machine from its e-stop to its first cut" },
 	{ "identify", "CSV", ctl_identify, true, true, true, "plot",
 	  "find the loops of the axes in a file that record wrote" },
 };
 
 #define AT(field)	.at = offsetof(struct ctl, field)
+#define SET(key)	CMDLINE_WORD, AT(set[INTERP_SET_##key])
 
 /* The first NCOMMON options are for all verbs.  A verb names the others that it
  * takes. */
@@ -184,6 +194,20 @@ static const struct cmdline_row rows[] = {
 	{ "electrode", "N", CMDLINE_NUMBER, AT(electrode), .min = 1,
 	  .max = 9999, .help =
 	  "submit: begin with electrode N, put in if it is another" },
+	{ "taper", "DEG", SET(TAPER), .help =
+	  "submit, of a wire: its top leans to the left; below 0 to the right" },
+	{ "wire-offset", "MM", SET(WIRE), .help =
+	  "submit, of 3B: the wire left of the contour; below 0 right of it" },
+	{ "scale", "X", SET(SCALE), .help =
+	  "submit, of 3B and 4B: by so much larger" },
+	{ "turn", "DEG", SET(TURN), .help =
+	  "submit, of 3B and 4B: turned about its start, from X toward Y" },
+	{ "mirror", "AXIS", SET(MIRROR), .help =
+	  "submit, of 3B and 4B: x, y or exchange" },
+	{ "plane", "MM", SET(PLANE), .help =
+	  "submit, of a wire: height of the plane of X Y" },
+	{ "second-plane", "MM", SET(SECOND), .help =
+	  "submit, of a wire: height of the plane of U V" },
 	{ "once", NULL, CMDLINE_FLAG, AT(once), .help = "watch: print one line" },
 	{ "line", NULL, CMDLINE_FLAG, AT(in_line), .help =
 	  "watch: one line, not the whole terminal" },
@@ -194,6 +218,10 @@ static const struct cmdline_row rows[] = {
 	  "record, identify: draw the result, .png or .svg" },
 	{ "pulses", "CHIP:LINE", CMDLINE_WORD, AT(pulses), .help =
 	  "doctor: measure how fast an output line is; it must be free" },
+	{ "fix", "FILE", CMDLINE_WORD, AT(fix), .help =
+	  "doctor: set this host up for the machine of FILE" },
+	{ "root", "DIR", CMDLINE_WORD, AT(root), .help =
+	  "doctor --fix: the host's files lie below DIR, as of an image" },
 	{ "csv", NULL, CMDLINE_FLAG, AT(csv), .help =
 	  "history: print a table for other programs" },
 	{ "picture", "FILE", CMDLINE_WORD, AT(picture), .help =
@@ -224,6 +252,10 @@ static void list_verbs(void)
 	for (size_t i = 0; i < NVERBS; i++)
 		printf("verb\t%s\t%s\t%s\n", verbs[i].name,
 		       *verbs[i].args ? verbs[i].args : "-", verbs[i].help);
+	for (size_t i = 1; i < CYCLE_NFAULTS; i++)
+		printf("word\tFAULT\t%s\n", fault_table[i].name);
+	for (size_t i = 0; i < INTERP_NTECH; i++)
+		printf("word\tKEY\t%s\n", interp_tech_field[i].name);
 }
 
 static const struct cmdline table = {

@@ -22,7 +22,7 @@
 #include <unistd.h>
 
 /* Return: false: the answers have ended. */
-bool new_answer(struct machine *m, const char *question, const char *plain,
+bool new_answer(bool *over, const char *question, const char *plain,
 		   char ret[WORD_MAX])
 {
 	char line[256];
@@ -30,8 +30,8 @@ bool new_answer(struct machine *m, const char *question, const char *plain,
 	int c;
 
 	fprintf(stderr, "%s [%s]: ", question, plain);
-	if (m->over || !fgets(line, sizeof(line), stdin)) {
-		m->over = true;
+	if (*over || !fgets(line, sizeof(line), stdin)) {
+		*over = true;
 		return false;
 	}
 	/* What is longer is one answer too, and a wrong one. */
@@ -42,21 +42,21 @@ bool new_answer(struct machine *m, const char *question, const char *plain,
 	while (n && isblank((unsigned char)line[n - 1]))
 		line[--n] = '\0';
 	n = strspn(line, " \t");
-	snprintf(ret, WORD_MAX, "%.63s", line[n] ? line + n : plain);
+	snprintf(ret, WORD_MAX, "%s", line[n] ? line + n : plain);
 	if (!isatty(STDIN_FILENO))
 		fprintf(stderr, "%s\n", ret);
 	return true;
 }
 
 /* One of the words, which are divided by blanks. */
-bool new_choose(struct machine *m, const char *question, const char *words,
+bool new_choose(bool *over, const char *question, const char *words,
 		   char ret[WORD_MAX])
 {
 	char plain[WORD_MAX];
 	size_t n;
 
 	snprintf(plain, sizeof(plain), "%.*s", (int)strcspn(words, " "), words);
-	while (new_answer(m, question, plain, ret)) {
+	while (new_answer(over, question, plain, ret)) {
 		const char *at = strchr(ret, ' ') ? NULL : words;
 
 		n = strlen(ret);
@@ -69,12 +69,12 @@ bool new_choose(struct machine *m, const char *question, const char *words,
 	return false;
 }
 
-bool new_numbers(struct machine *m, const char *question, const char *plain,
+bool new_numbers(bool *over, const char *question, const char *plain,
 		    const struct wanted *w, double *const *ret)
 {
 	char word[WORD_MAX], *end;
 
-	while (new_answer(m, question, plain, word)) {
+	while (new_answer(over, question, plain, word)) {
 		const char *at = word;
 		int i;
 
@@ -97,7 +97,7 @@ bool new_numbers(struct machine *m, const char *question, const char *plain,
 
 static bool ask_name(struct machine *m)
 {
-	while (new_answer(m, "name of the machine", "edm", m->name)) {
+	while (new_answer(&m->over, "name of the machine", "edm", m->name)) {
 		if (names_machine_ok(m->name))
 			return true;
 		fprintf(stderr, "%s\n", NAMES_MACHINE_WANTED);
@@ -127,7 +127,8 @@ static bool axes_fit(struct machine *m)
 
 static bool ask_axes(struct machine *m)
 {
-	while (new_answer(m, "axes", is_wire(m) ? "XYUV" : "XYZC", m->axes)) {
+	while (new_answer(&m->over, "axes", is_wire(m) ? "XYUV" : "XYZC",
+			  m->axes)) {
 		if (axes_fit(m))
 			return true;
 		fprintf(stderr, "each once, of X Y Z A B C U V; a %s machine "
@@ -152,7 +153,7 @@ static bool ask_axis(struct machine *m, char axis)
 
 	snprintf(q, sizeof(q), "%c: travel from and to, %s", axis, unit);
 	do {
-		if (!new_numbers(m, q, is_rotary(axis) ? "-360 360" :
+		if (!new_numbers(&m->over, q, is_rotary(axis) ? "-360 360" :
 							 "-100 100",
 			     &travel, (double *[]) { &m->from[i], &m->to[i] }))
 			return false;
@@ -161,11 +162,13 @@ static bool ask_axis(struct machine *m, char axis)
 	} while (!(m->from[i] < m->to[i]));
 	snprintf(q, sizeof(q), "%c: one pulse, in thousandths of %s", axis,
 		 unit);
-	if (!new_numbers(m, q, "1", &pulse, (double *[]) { &m->pulse_um[i] }))
+	if (!new_numbers(&m->over, q, "1", &pulse,
+			 (double *[]) { &m->pulse_um[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: fastest, %s a second", axis, unit);
-	return new_numbers(m, q, strcmp(m->backend, "gpio") == 0 ? "5" : "10",
-		       &fast, (double *[]) { &m->v_max[i] });
+	return new_numbers(&m->over, q,
+			   strcmp(m->backend, "gpio") == 0 ? "5" : "10", &fast,
+			   (double *[]) { &m->v_max[i] });
 }
 
 static bool ask_gpio(struct machine *m, char axis)
@@ -177,7 +180,8 @@ static bool ask_gpio(struct machine *m, char axis)
 
 	snprintf(q, sizeof(q), "%c: lines of step and direction", axis);
 	snprintf(plain, sizeof(plain), "%d %d", 2 * i, 2 * i + 1);
-	if (!new_numbers(m, q, plain, &lines, (double *[]) { &step, &dir }))
+	if (!new_numbers(&m->over, q, plain, &lines,
+			 (double *[]) { &step, &dir }))
 		return false;
 	m->step[i] = (int)step;
 	m->dir[i] = (int)dir;
@@ -194,16 +198,16 @@ static bool ask_can(struct machine *m, char axis)
 
 	snprintf(q, sizeof(q), "%c: node of the drive", axis);
 	snprintf(plain, sizeof(plain), "%d", i + 1);
-	if (!new_numbers(m, q, plain, &nodes, (double *[]) { &node }))
+	if (!new_numbers(&m->over, q, plain, &nodes, (double *[]) { &node }))
 		return false;
 	m->step[i] = (int)node;
 	snprintf(q, sizeof(q), "%c: increments of the drive for a %s", axis,
 		 is_rotary(axis) ? "degree" : "mm");
-	if (!new_numbers(m, q, "10000", &all,
+	if (!new_numbers(&m->over, q, "10000", &all,
 		     (double *[]) { &m->increments[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: what holds it without power", axis);
-	return new_choose(m, q, axis == 'Z' ? "drive free none" :
+	return new_choose(&m->over, q, axis == 'Z' ? "drive free none" :
 		      "free drive none", m->holds[i]);
 }
 
@@ -225,11 +229,12 @@ static bool ask_backend(struct machine *m)
 	const bool can = strcmp(m->backend, "can402") == 0;
 
 	do {
-		if (gpio && !new_answer(m, "the GPIO chip, as gpiodetect lists "
-					"it",
-				    "gpiochip0", m->bus))
+		if (gpio && !new_answer(&m->over,
+					"the GPIO chip, as gpiodetect lists it",
+					"gpiochip0", m->bus))
 			return false;
-		if (can && !new_answer(m, "the CAN interface", "can0", m->bus))
+		if (can && !new_answer(&m->over, "the CAN interface",
+				       "can0", m->bus))
 			return false;
 	} while ((gpio || can) && !new_is_word(m->bus));
 	for (const char *at = m->axes; *at && (gpio || can); at++)
@@ -241,9 +246,9 @@ static bool ask_backend(struct machine *m)
 static bool ask_all(struct machine *m)
 {
 	if (!ask_name(m) ||
-	    !new_choose(m, "kind: sinker or wire", "sinker wire",
+	    !new_choose(&m->over, "kind: sinker or wire", "sinker wire",
 				m->kind) ||
-	    !new_choose(m, "what moves it: null (nothing yet), sim, "
+	    !new_choose(&m->over, "what moves it: null (nothing yet), sim, "
 				"gpio, can402", "null sim gpio can402",
 				m->backend) || !ask_axes(m))
 		return false;
@@ -251,7 +256,7 @@ static bool ask_all(struct machine *m)
 		if (!ask_axis(m, *at))
 			return false;
 	return ask_backend(m) &&
-	       new_choose(m, "dialect of its programs (edmsim "
+	       new_choose(&m->over, "dialect of its programs (edmsim "
 		      "--document-dialects tells what they mean)",
 		      EDM_DIALECTS, m->dialect) && new_more(m);
 }

@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#define WORD_MAX	64
+#define WORD_MAX	160
 #define AXES		"XYZABCUV"
 #define NAXES		8
 
@@ -24,7 +24,7 @@ struct machine {
 	char holds[NAXES][WORD_MAX];	/* can402: without power */
 	/* What is behind the dialect: new_machine_more.c. */
 	char home[NAXES][WORD_MAX], side[NAXES][WORD_MAX];
-	double home_at[NAXES];
+	double home_at[NAXES], home_by[NAXES];	/* place; 6098 */
 	char home_line[NAXES][WORD_MAX], limit_line[NAXES][WORD_MAX];
 	char gap[WORD_MAX], gap_at[3][WORD_MAX];
 	char generator[WORD_MAX], reached[WORD_MAX], peak[WORD_MAX];
@@ -35,12 +35,12 @@ struct machine {
 
 /** new_answer() - @plain is the answer to an empty line.
  *  Return: false: the answers have ended. */
-bool new_answer(struct machine *m, const char *question,
+bool new_answer(bool *over, const char *question,
 			const char *plain, char ret[WORD_MAX]);
 
 /** new_choose() - one of the words, which are divided by blanks; the
  *  first one is offered. */
-bool new_choose(struct machine *m, const char *question,
+bool new_choose(bool *over, const char *question,
 			const char *words, char ret[WORD_MAX]);
 
 /* So many numbers, each within the range. */
@@ -49,7 +49,7 @@ struct wanted {
 	double from, to;
 };
 
-bool new_numbers(struct machine *m, const char *question,
+bool new_numbers(bool *over, const char *question,
 			 const char *plain, const struct wanted *w,
 			 double *const *ret);
 

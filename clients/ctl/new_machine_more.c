@@ -18,7 +18,7 @@ static int index_of(char axis)
 static bool word(struct machine *m, const char *question, const char *plain,
 		 char ret[WORD_MAX])
 {
-	while (new_answer(m, question, plain, ret))
+	while (new_answer(&m->over, question, plain, ret))
 		if (new_is_word(ret))
 			return true;
 	return false;
@@ -29,23 +29,29 @@ static bool word(struct machine *m, const char *question, const char *plain,
 static bool ask_home(struct machine *m, char axis)
 {
 	static const struct wanted place = { 1, -1e5, 1e5 };
+	static const struct wanted method = { 1, -128, 127 };
 	const int i = index_of(axis);
 	const bool gpio = is(m->backend, "gpio");
 	char q[96];
 
 	snprintf(q, sizeof(q), "%c: how its place is found", axis);
-	if (!new_choose(m, q, is(m->backend, "can402") ?
-				"none switch absolute" : "none switch",
+	if (!new_choose(&m->over, q, is(m->backend, "can402") ?
+				"none drive absolute" : "none switch",
 				m->home[i]))
 		return false;
 	snprintf(q, sizeof(q), "%c: the switch lies toward", axis);
 	if (is(m->home[i], "switch") &&
-	    !new_choose(m, q, "- +", m->side[i]))
+	    !new_choose(&m->over, q, "- +", m->side[i]))
 		return false;
 	snprintf(q, sizeof(q), "%c: its place there, mm or degrees", axis);
 	if (!is(m->home[i], "none") &&
-	    !new_numbers(m, q, "0", &place,
+	    !new_numbers(&m->over, q, "0", &place,
 				 (double *[]) { &m->home_at[i] }))
+		return false;
+	snprintf(q, sizeof(q), "%c: the drive's method, object 6098", axis);
+	if (is(m->home[i], "drive") &&
+	    !new_numbers(&m->over, q, "37", &method,
+				 (double *[]) { &m->home_by[i] }))
 		return false;
 	snprintf(q, sizeof(q), "%c: line of the home switch", axis);
 	if (gpio && is(m->home[i], "switch") &&
@@ -71,7 +77,7 @@ static bool ask_gap(struct machine *m)
 	}
 	if (!is(m->backend, "gpio"))
 		return true;
-	if (!new_choose(m, "how the gap is read: none (not yet), lines "
+	if (!new_choose(&m->over, "how the gap is read: none (not yet), lines "
 				"(comparators), voltage (a converter)",
 				"none lines voltage", m->gap))
 		return false;
@@ -92,23 +98,23 @@ static bool ask_generator(struct machine *m)
 {
 	if (is(m->backend, "null") || is(m->backend, "sim"))
 		return true;
-	if (!new_choose(m, "how the generator gets a condition: none "
+	if (!new_choose(&m->over, "how the generator gets a condition: none "
 				"(by hand), lines, can, modbus",
 				"none lines can modbus", m->generator))
 		return false;
 	if (is(m->generator, "modbus"))
 		return word(m, "its port, /dev/ttyUSB0 or ADDRESS:PORT",
 			    "/dev/ttyUSB0", m->reached) &&
-		       new_answer(m, "where the peak current goes",
+		       new_answer(&m->over, "where the peak current goes",
 					  "register 10 scale 0.1", m->peak);
 	if (is(m->generator, "can"))
 		return word(m, "CAN identifier of its frame, docs/generator.md",
 			    "512", m->reached);
 	if (is(m->generator, "lines"))
-		return new_answer(m, "where the peak current goes",
+		return new_answer(&m->over, "where the peak current goes",
 					  "lines 20 21 26 weights 3 6 12",
 					  m->peak);
-	return new_answer(m, "what a person sets at it, as on_us "
+	return new_answer(&m->over, "what a person sets at it, as on_us "
 				  "off_us", "none", m->by_hand);
 }
 
@@ -116,7 +122,7 @@ static bool ask_wire(struct machine *m)
 {
 	static const struct wanted height = { 3, -2000, 2000 };
 
-	return new_numbers(m, "heights above the table, mm: lower "
+	return new_numbers(&m->over, "heights above the table, mm: lower "
 				   "guide, upper guide, top of the work",
 				   "-20 80 40", &height, (double *[]) {
 					&m->heights[0], &m->heights[1],
@@ -137,7 +143,7 @@ bool new_more(struct machine *m)
 	if (!ask_gap(m) || !ask_generator(m))
 		return false;
 	if (strpbrk(m->axes, "ABC") &&
-	    !new_answer(m, "joints from work to tool, as C(0 0 -120) "
+	    !new_answer(&m->over, "joints from work to tool, as C(0 0 -120) "
 				"A(0 15 -80) X Y Z; none", "none", m->chain))
 		return false;
 	return !has_guides(m) || ask_wire(m);
@@ -153,6 +159,9 @@ void new_put_axis(FILE *f, const struct machine *m, int i)
 		m->home_at[i]);
 	if (is(m->home[i], "absolute"))
 		fprintf(f, "absolute = yes\n");
+	else if (is(m->home[i], "drive"))
+		fprintf(f, "drive_home = %.0f\nhome_fast_mm_s = %.10g\n",
+			m->home_by[i], m->v_max[i]);
 	else
 		fprintf(f, "home_dir = %s\nhome_fast_mm_s = %.10g\n",
 			m->side[i], m->v_max[i]);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * press.c - edmctl jog-on: an axis moves as long as this program runs
+ * press.c - an axis moves as long as this program runs, or wants it to
  *
  * The program sends a sign many times a second.  If it is killed, or if the
  * network fails, the axis stands still 0.2 s later.
@@ -20,6 +20,7 @@
 
 struct press {
 	struct ctl *ctl;
+	const char *axis;
 	bool begun;
 	int code;			/* of the refusal that ended it */
 	char reason[200];
@@ -46,7 +47,7 @@ static int say(struct press *p, double mm_s, uint32_t number)
 		.verb = "jog-on", .text = text, .arg = mm_s,
 	};
 
-	snprintf(text, sizeof(text), "%.16s %u%s", p->ctl->arg, number,
+	snprintf(text, sizeof(text), "%.16s %u%s", p->axis, number,
 		 p->begun ? "" : " begin");
 	return talk_send(p->ctl->talk, &q, LATE_S, on_answer, p);
 }
@@ -62,12 +63,30 @@ static void wait_a_bit(struct press *p)
 		talk_wait(p->ctl->talk, (int)ceil(left_s * 1e3));
 }
 
-int ctl_jog_on(struct ctl *c)
+int ctl_press(struct ctl *c, const struct ctl_press *asked, char *said,
+	      size_t size)
 {
 	const uint32_t number = 1 + randombytes_uniform(VERB_PRESS_MAX);
-	struct press p = { .ctl = c };
-	char *end;
+	struct press p = { .ctl = c, .axis = asked->axis };
+
+	while (!talk_interrupted() && p.code == 0 &&
+	       (!asked->more || asked->more(asked->arg))) {
+		say(&p, asked->mm_s, number);
+		wait_a_bit(&p);
+	}
+	/* If this message is lost, the axis stops a little later. */
+	say(&p, 0, number);
+	snprintf(said, size, "%s", p.reason);
+	/* A refusal after the axis has moved means that the travel ended
+	 * there. */
+	return p.begun ? 0 : p.code;
+}
+
+int ctl_jog_on(struct ctl *c)
+{
+	char *end, said[200];
 	const double mm_s = strtod(c->value, &end);
+	int err;
 
 	if (end == c->value || *end || !isfinite(mm_s) || mm_s == 0) {
 		fprintf(stderr, "edmctl: jog-on: '%s' is no speed; mm/s, or "
@@ -78,16 +97,10 @@ int ctl_jog_on(struct ctl *c)
 		return ctl_unanswered(c, c->talk_err);
 	fprintf(stderr, "edmctl: %s moves until Ctrl-C\n", c->arg);
 	talk_catch_signals();
-	while (!talk_interrupted() && p.code == 0) {
-		say(&p, mm_s, number);
-		wait_a_bit(&p);
-	}
-	/* If this message is lost, the axis stops a little later. */
-	say(&p, 0, number);
-	/* A refusal after the axis has moved means that the travel ended
-	 * there. */
-	if (p.code == 0 || p.begun)
-		return 0;
-	fprintf(stderr, "edmctl: jog-on: %s\n", p.reason);
-	return p.code;
+	err = ctl_press(c, &(struct ctl_press) { .axis = c->arg,
+						 .mm_s = mm_s },
+			said, sizeof(said));
+	if (err)
+		fprintf(stderr, "edmctl: jog-on: %s\n", said);
+	return err;
 }

@@ -91,7 +91,7 @@ static void print_refusal(const struct ctl *c, const struct talk_ack *a)
 
 	if (j && json_unpack(j, "{s:i,s:i,s:s,s:s}", "line", &line, "column",
 			     &column, "found", &found, "wanted",
-			     &wanted) == 0) {
+			     &wanted) == 0 && line > 0) {
 		plain_copy(what, sizeof(what), found);
 		plain_copy(want, sizeof(want), wanted);
 		fprintf(stderr, "%s:%d:%d: error: %s; %s\n", c->arg, line,
@@ -176,7 +176,10 @@ static const char *name_of(const struct ctl *c)
 static int send_text(struct ctl *c, const struct text *t,
 		     char id[TALK_WORD_MAX])
 {
+	char setting[INTERP_SETTING_MAX];
 	const struct submission_text x = {
+		.setting = cmdline_pairs(interp_set_name, c->set, setting,
+					 sizeof(setting)),
 		.id = c->id, .name = name_of(c), .text = t->bytes,
 		.bytes = t->size, .hold = c->hold, .from_line = c->from_line,
 		.from_mm = c->from_mm, .electrode = (int)c->electrode,
@@ -186,6 +189,9 @@ static int send_text(struct ctl *c, const struct text *t,
 	struct awaited a;
 	int err, rc;
 
+	if (!x.setting)
+		return cmdline_refuse("edmctl", "what is set for the job",
+				      "is too long", "shorter numbers");
 	if (!c->talk)
 		return ctl_unanswered(c, -ETIMEDOUT);
 	err = submission_begin(&j, c->talk, &x);

@@ -3,12 +3,14 @@
  * edm-dds - publishes the state of one machine to the fleet
  *
  * It reads edmd's shared memory and publishes an edm::MachineState at a fixed
- * rate.  It only reads: nothing that comes over DDS reaches the machine.
+ * rate.  It asks edmd-jobs for the jobs that have ended and for alarms.  It
+ * only reads: nothing that comes over DDS reaches the machine.
  */
 #include "cmdline.h"
 #include "clocks.h"
 #include "config.h"
 #include "names.h"
+#include "reports.h"
 #include "tool.h"
 #include "topic.h"
 #include "watch.h"
@@ -21,11 +23,13 @@
 #include <unistd.h>
 
 #define NS	1000000000LL
+#define STEP_NS	(NS / 20)		/* edmd-jobs is heard as often */
+#define OTHERS_MAX	2048
 #define ONCE_NS	(2 * NS)		/* --once waits this long for a
 					 * reader */
 
 struct options {
-	const char *machine, *fault_words;
+	const char *machine, *fault_words, *key;
 	dds_domainid_t domain;
 	double hz;
 	bool once;
@@ -33,7 +37,10 @@ struct options {
 
 struct bridge {
 	struct watch watch;
-	dds_entity_t participant, writer;
+	dds_entity_t participant, others, writer;
+	int64_t counted_ns;
+	uint32_t known;
+	struct reports reports;
 	sigset_t stops;
 	char host[sizeof(((edm_MachineState *)0)->host)];
 	char said[sizeof(((edm_MachineState *)0)->state)];
@@ -87,6 +94,10 @@ static const struct cmdline_row rows[] = {
 	  "options after it replace them" },
 	{ "machine", "NAME", CMDLINE_CALL, .take = take_machine, .help =
 	  "name of the machine to read (edm)" },
+	{ "key", "FILE", CMDLINE_WORD, AT(key), .help =
+	  "key file by which jobs and alarms are asked for;\n"
+	  "the role viewer is enough ($EDM_KEY, else the\n"
+	  "host's own)" },
 	{ "domain", "N", CMDLINE_CALL, .take = take_domain, .help =
 	  "DDS domain, 0 to 230 (0)" },
 	{ "hz", "N", CMDLINE_NUMBER, AT(hz), .min = TOPIC_HZ_MIN, .max = 100,
@@ -112,7 +123,7 @@ static const struct cmdline table = {
 
 static int bridge_open(struct bridge *b, const struct options *o)
 {
-	dds_entity_t topic;
+	char name[sizeof(TOPIC_DDS) + SHM_NAME_MAX];
 
 	watch_init(&b->watch, o->machine);
 	if (o->fault_words)
@@ -120,14 +131,18 @@ static int bridge_open(struct bridge *b, const struct options *o)
 	gethostname(b->host, sizeof(b->host) - 1);
 	tool_block_stops(&b->stops);
 
-	b->participant = dds_create_participant(o->domain, NULL, NULL);
+	snprintf(name, sizeof(name), TOPIC_DDS "%s", o->machine);
+	b->participant = tool_participant(table.program, o->domain, name);
 	if (b->participant < 0)
 		return b->participant;
-	topic = topic_create(b->participant);
-	if (topic < 0)
-		return topic;
-	b->writer = topic_writer_create(b->participant, topic);
-	return b->writer < 0 ? b->writer : 0;
+	b->others = dds_create_reader(b->participant,
+				      DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, NULL,
+				      NULL);
+	b->writer = topic_writer_create(b->participant, TOPIC_STATE);
+	if (b->others < 0 || b->writer < 0)
+		return b->others < 0 ? b->others : b->writer;
+	return o->once ? 0 : reports_open(&b->reports, b->participant,
+					  o->machine, o->key);
 }
 
 /* Deleting the writer disposes of its instance, so readers see that it
@@ -136,6 +151,7 @@ static void bridge_close(struct bridge *b)
 {
 	if (b->participant > 0)
 		dds_delete(b->participant);
+	reports_close(&b->reports);
 	watch_fini(&b->watch);
 }
 
@@ -164,22 +180,63 @@ static void say(struct bridge *b, const edm_MachineState *m)
 			word);
 }
 
+static bool is_ours(const dds_builtintopic_participant_t *p)
+{
+	char *name = NULL;
+	const bool ours = dds_qget_entity_name(p->qos, &name) && name &&
+			  !strncmp(name, TOPIC_DDS, strlen(TOPIC_DDS));
+
+	dds_free(name);
+	return ours;
+}
+
+/* The others that DDS has found, once a second. */
+static void count(struct bridge *b)
+{
+	const int64_t now = clock_ns(CLOCK_MONOTONIC);
+	static dds_sample_info_t info[OTHERS_MAX];
+	static void *at[OTHERS_MAX];
+	int n;
+
+	if (b->counted_ns && now - b->counted_ns < NS)
+		return;
+	b->counted_ns = now;
+	b->known = 0;
+	at[0] = NULL;
+	n = dds_read(b->others, at, info, OTHERS_MAX, OTHERS_MAX);
+	for (int i = 0; i < n; i++)
+		b->known += info[i].valid_data &&
+			    info[i].instance_state == DDS_IST_ALIVE &&
+			    is_ours(at[i]);
+	if (n > 0)
+		dds_return_loan(b->others, at, n);
+}
+
 static int publish(struct bridge *b)
 {
 	edm_MachineState m;
 
 	watch_look(&b->watch, clock_ns(CLOCK_MONOTONIC), &m);
 	memcpy(m.host, b->host, sizeof(m.host));
+	count(b);
+	m.known = b->known;
 	say(b, &m);
 	return dds_write(b->writer, &m);
 }
 
 /* Wait until @until_ns.  Return: true if it was told to stop meanwhile. */
-static bool wait_until(const struct bridge *b, int64_t until_ns)
+static bool wait_until(struct bridge *b, int64_t until_ns)
 {
-	const int64_t left = until_ns - clock_ns(CLOCK_MONOTONIC);
+	int64_t left;
 
-	return tool_wait(&b->stops, left > 0 ? left : 0);
+	do {
+		reports_step(&b->reports);
+		left = until_ns - clock_ns(CLOCK_MONOTONIC);
+		if (tool_wait(&b->stops, left < 0 ? 0 : left < STEP_NS ? left :
+			      STEP_NS))
+			return true;
+	} while (left > STEP_NS);
+	return false;
 }
 
 static int run(struct bridge *b, double hz)

@@ -30,21 +30,9 @@ static struct word clean(const char *s)
 	return w;
 }
 
-static struct word state_of(const struct table_row *r)
+static struct word state_of(const struct hall_machine *r)
 {
-	return r->gone ? clean("gone") : clean(r->m->state);
-}
-
-static int by_name(const void *a, const void *b)
-{
-	const struct table_row *x = a, *y = b;
-
-	return strcmp(x->m->machine, y->m->machine);
-}
-
-void table_sort(struct table_row *row, size_t n)
-{
-	qsort(row, n, sizeof(*row), by_name);
+	return clean(r->gone ? "gone" : r->disputed ? "disputed" : r->m.state);
 }
 
 static void bar(char ret[BAR + 1], double progress)
@@ -80,23 +68,25 @@ static void progress_of(const edm_MachineState *m, char *ret, size_t n)
 		snprintf(ret, n, "no job yet");
 }
 
-static void print_row(const struct table_row *r, FILE *f)
+static void print_row(const struct hall_machine *r, FILE *f)
 {
-	const edm_MachineState *m = r->m;
+	const edm_MachineState *m = &r->m;
 	struct word name = clean(m->machine), host = clean(m->host);
 	struct word state = state_of(r);
-	struct word needs = clean(strcmp(m->fault, "none") == 0 && *m->stand ?
+	struct word needs = clean(r->disputed ? r->rival :
+				  strcmp(m->fault, "none") == 0 && *m->stand ?
 				  m->stand : m->fault);
 	char done[96];
 
 	progress_of(m, done, sizeof(done));
 	fprintf(f, "%-14s %-14s %-8s %-30s %9.3f mm %6.1f V "
-		"%6.2f mm/min %6u %6u  %s\n", name.c, host.c, state.c, done,
+		"%6.2f mm/min %6u %6u  %s%s\n", name.c, host.c, state.c, done,
 		fit(m->depth_mm, 9999), fit(m->gap_v, 999),
-		fit(m->feed_mm_s * 60, 9999), m->jumps, m->retracts, needs.c);
+		fit(m->feed_mm_s * 60, 9999), m->jumps, m->retracts,
+		r->disputed ? "told by two; also from " : "", needs.c);
 }
 
-void table_print(const struct table_row *row, size_t n, FILE *f)
+void table_print(const struct hall_machine *row, size_t n, FILE *f)
 {
 	if (n == 0)
 		return;
@@ -129,9 +119,9 @@ static const char *generator_of(const edm_MachineState *m)
 	       generator_word[i] : generator_word[0];
 }
 
-static void json_words(json_t *o, const struct table_row *r)
+static void json_words(json_t *o, const struct hall_machine *r)
 {
-	const edm_MachineState *m = r->m;
+	const edm_MachineState *m = &r->m;
 
 	json_object_set_new(o, "machine", json_string(clean(m->machine).c));
 	json_object_set_new(o, "host", json_string(clean(m->host).c));
@@ -143,6 +133,8 @@ static void json_words(json_t *o, const struct table_row *r)
 			    json_string(clean(m->generator_fault).c));
 	json_object_set_new(o, "generator_state",
 			    json_string(generator_of(m)));
+	json_object_set_new(o, "rival", json_string(
+			    r->disputed ? clean(r->rival).c : ""));
 	json_object_set_new(o, "is_on", json_boolean(m->is_on));
 }
 
@@ -156,6 +148,7 @@ static void json_counts(json_t *o, const edm_MachineState *m)
 		{ "program", m->program }, { "line", m->line },
 		{ "jumps", m->jumps }, { "retracts", m->retracts },
 		{ "shorts", m->shorts }, { "overruns", m->overruns },
+		{ "known", m->known },
 	};
 
 	for (size_t i = 0; i < sizeof(count) / sizeof(count[0]); i++)
@@ -183,20 +176,20 @@ static void json_numbers(json_t *o, const edm_MachineState *m)
 		json_object_set_new(o, number[i].name, real(number[i].v));
 }
 
-static json_t *json_row(const struct table_row *r)
+static json_t *json_row(const struct hall_machine *r)
 {
 	json_t *o = json_object();
 
 	json_words(o, r);
-	json_counts(o, r->m);
-	json_numbers(o, r->m);
-	json_object_set_new(o, "position_mm", json_positions(r->m));
+	json_counts(o, &r->m);
+	json_numbers(o, &r->m);
+	json_object_set_new(o, "position_mm", json_positions(&r->m));
 	json_object_set_new(o, "heard_utime",
 			    json_integer(r->heard_ns / 1000));
 	return o;
 }
 
-void table_print_json(const struct table_row *row, size_t n, FILE *f)
+void table_print_json(const struct hall_machine *row, size_t n, FILE *f)
 {
 	json_t *all = json_array();
 	json_t *o = json_object();

@@ -10,23 +10,14 @@
 #ifndef DDS_TABLE_H
 #define DDS_TABLE_H
 
-#include "edm.h"
+#include "hall.h"
 
 #include <stdio.h>
 
-struct table_row {
-	const edm_MachineState *m;
-	bool gone;			/* its writer left, died or hangs */
-	int64_t heard_ns;		/* CLOCK_REALTIME of its last sample */
-};
-
-/** table_sort() - by the machine's name. */
-void table_sort(struct table_row *row, size_t n);
-
 /** table_print() - a heading, and a line for each machine. */
-void table_print(const struct table_row *row, size_t n, FILE *f);
+void table_print(const struct hall_machine *row, size_t n, FILE *f);
 
 /** table_print_json() - {"machines": [...]} on one line. */
-void table_print_json(const struct table_row *row, size_t n, FILE *f);
+void table_print_json(const struct hall_machine *row, size_t n, FILE *f);
 
 #endif /* DDS_TABLE_H */

@@ -23,6 +23,20 @@ int tool_domain(const char *program, const char *text, dds_domainid_t *ret);
 int tool_fail(const char *name, dds_domainid_t domain, dds_return_t code);
 
 /**
+ * tool_participant() - in @domain, with a name that others see, NULL for none.
+ *
+ * Anybody can send what is no DDS, and for each packet the library has a line.
+ * From here on these are counted: one of them is printed in TOOL_QUIET_S, with
+ * their number.
+ *
+ * Return: the participant, or a negative DDS code.
+ */
+dds_entity_t tool_participant(const char *program, dds_domainid_t domain,
+			      const char *name);
+
+#define TOOL_QUIET_S	60
+
+/**
  * tool_block_stops() - block SIGINT and SIGTERM in every thread from now on, so
  * that tool_wait() takes them.
  */

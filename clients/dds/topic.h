@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * topic.h - the fleet's one DDS topic and its quality of service
+ * topic.h - the fleet's DDS topics and their quality of service
  *
  * Here is everything on which writer and reader have to agree.  docs/fleet.md
  * is for those who write another reader.
@@ -13,7 +13,10 @@
 #include "dds/dds.h"
 #include "edm.h"
 
-#define TOPIC_NAME	"EDM_MachineState"
+enum topic { TOPIC_STATE, TOPIC_REPORT, TOPIC_ALARM, TOPIC_NTOPICS };
+
+/* Each participant of an edm-dds has a name that begins so. */
+#define TOPIC_DDS	"edm-dds "
 
 /*
  * A writer promises a sample each second, and each sample is a sign of life.  A
@@ -23,14 +26,13 @@
 #define TOPIC_LEASE	DDS_SECS(2)
 #define TOPIC_HZ_MIN	2.0
 
-/** topic_create() - Return: the topic, or a negative DDS code. */
-dds_entity_t topic_create(dds_entity_t participant);
+#define TOPIC_KEPT_MAX	4096		/* reports, and alarms, of a machine */
 
 /** topic_writer_create() - Return: the writer, or a negative DDS code. */
-dds_entity_t topic_writer_create(dds_entity_t participant, dds_entity_t topic);
+dds_entity_t topic_writer_create(dds_entity_t participant, enum topic which);
 
 /** topic_reader_create() - Return: the reader, or a negative DDS code. */
-dds_entity_t topic_reader_create(dds_entity_t participant, dds_entity_t topic);
+dds_entity_t topic_reader_create(dds_entity_t participant, enum topic which);
 
 /**
  * topic_domain_parse() - a domain number from the command line.

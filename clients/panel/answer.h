@@ -24,6 +24,7 @@ struct request {
 	char id[33], name[64];
 	bool hold;
 	int from_line;			/* 0: at the beginning */
+	char setting[INTERP_SETTING_MAX];
 	bool has_body, whole;		/* the request has a text; the whole
 					 * text has come */
 	int body_fd;

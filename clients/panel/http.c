@@ -31,7 +31,7 @@
 #define SEND_S		180
 #define CHECK_BYTES	((size_t)1536 << 20)
 #define LOGIN_MAX	1024
-#define NAME_ROOM	320
+#define NAME_ROOM	640
 
 struct route {
 	const char *path;
@@ -411,7 +411,7 @@ static int post_check(struct request *r)
 	const char *const argv[] = {
 		r->panel->self, "--work", "check", "--config",
 		r->panel->config_path, "--file-name", r->name, "--start",
-		start, NULL
+		start, "--setting", r->setting, NULL
 	};
 	const struct child_job j = {
 		.argv = argv, .in_fd = r->body_fd, .memory_bytes = CHECK_BYTES,
@@ -441,6 +441,7 @@ static int post_job(struct request *r)
 	struct service_job j = {
 		.fd = r->body_fd, .id = r->id, .name = r->name,
 		.hold = r->hold, .from_line = r->from_line,
+		.setting = r->setting,
 	};
 	int err;
 
@@ -463,11 +464,15 @@ static int post_job(struct request *r)
 
 static void on_path(void *arg, int status, int out_fd)
 {
-	if (status == 0)
+	json_t *o;
+
+	if (status == 0) {
 		answer_file(arg, out_fd);
-	else
-		close(out_fd), answer_refusal(arg, 404, "there is no such path",
-					     "the program that is loaded");
+		return;
+	}
+	o = status == 1 ? head_of(out_fd) : NULL;
+	close(out_fd);
+	answer_json(arg, 404, o ? o : check_failed(status));
 }
 
 static int get_path(struct request *r)
@@ -535,7 +540,8 @@ static int may_do(struct request *r, bool post)
 /* Does edmd-jobs take this name? */
 static bool read_name(struct request *r)
 {
-	char hold[8] = "", line[16] = "", name[NAME_ROOM] = "job.ngc";
+	char hold[8] = "", line[16] = "", set[NAME_ROOM] = "";
+	char name[NAME_ROOM] = "job.ngc";
 	long from;
 
 	read_arg(r, "name=", name, sizeof(name));
@@ -548,11 +554,14 @@ static bool read_name(struct request *r)
 	from = strtol(line, NULL, 10);
 	/* The service refuses what is no line. */
 	r->from_line = from < 0 || from > INT32_MAX ? -1 : (int)from;
+	read_arg(r, "set=", set, sizeof(set));
+	snprintf(r->setting, sizeof(r->setting), "%s", set);
 	snprintf(r->name, sizeof(r->name), "%.63s", name);
 	/* lws does not tell a text that is too long from no text. */
 	if (lws_hdr_total_length(r->wsi, WSI_TOKEN_HTTP_URI_ARGS) >= NAME_ROOM)
 		return false;
-	return *name && strlen(name) < sizeof(r->name) && plain_is(name);
+	return *name && strlen(name) < sizeof(r->name) && plain_is(name) &&
+	       strlen(set) < sizeof(r->setting);
 }
 
 /* As long as there are bytes behind the body, lws calls this again and serves
@@ -633,7 +642,8 @@ static int take(struct request *r, const char *path)
 		return answer_refusal(r, 400, "this name of a job cannot be "
 				     "taken", "1 to 63 bytes of UTF-8 "
 				     "without characters of control or of "
-				     "the direction of writing");
+				     "the direction of writing; settings "
+				     "of up to 191 bytes");
 	return open_body(r);
 }
 

@@ -61,6 +61,8 @@ static const struct cmdline_row work_rows[] = {
 	  "check: of the text" },
 	{ "start", "PLACES", CMDLINE_WORD, AT(work.start), .help =
 	  "check: eight places, mm" },
+	{ "setting", "WORDS", CMDLINE_WORD, AT(work.setting), .help =
+	  "check: what is set for the job" },
 	{ "tolerance", "MM", CMDLINE_NUMBER, AT(work.tolerance_mm), 0, 1000,
 	  .help = "path: how fine" },
 };
@@ -82,7 +84,7 @@ int panel_options_take(struct panel_options *ret, int argc, char **argv)
 	*ret = (struct panel_options) {
 		.config = "/etc/edmd/machine.ini",
 		.work = { .config = "/etc/edmd/machine.ini",
-			  .name = "job.ngc" },
+			  .name = "job.ngc", .setting = "" },
 	};
 	rc = cmdline_take(work ? &work_table : &table, ret, argc, argv,
 			  &given);

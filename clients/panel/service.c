@@ -233,7 +233,8 @@ int service_send(struct service *a, const struct service_job *j,
 	struct sending *s = room_to_send(a);
 	struct submission_text x = { .id = j->id, .name = j->name, .text = "",
 			      .bytes = j->bytes, .hold = j->hold,
-			      .from_line = j->from_line };
+			      .from_line = j->from_line,
+			      .setting = j->setting };
 	int err;
 
 	if (!a->talk)

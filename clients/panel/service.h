@@ -71,6 +71,7 @@ struct service_job {
 	const char *id, *name;
 	bool hold;
 	int from_line;
+	const char *setting;		/* interp/setting.h */
 };
 
 typedef void (*service_done_fn)(void *arg, const struct service_answer *a);

@@ -497,7 +497,8 @@ json_t *verbs_hello(struct panel *p, const struct session *s)
 			 "machine", c->name, "user", s->user, "role",
 			 role_name(s->role), "version", EDM_VERSION, "axes",
 			 axes, "fields", values_fields(), "process",
-			 c->gap.process, "height", config_wire_height_mm(c),
+			 c->gap.process, "height",
+			 config_wire_height_mm(c, &c->wire),
 			 "plc", config_has_plc(c), "simulated",
 			 config_machine_is(c, MACHINE_NO_WIRES), "table",
 			 c->tech_table);

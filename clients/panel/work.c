@@ -142,8 +142,11 @@ static int compile(const struct machine_config *c, const struct work *w,
 	}
 	config_compiling(c, &tech, &of);
 	read_start(w->start, of.build.start_mm);
-	b = interp_build_create(&of.build);
-	err = b ? interp_compile(text, &of.text, b, &lines, &d) : -ENOMEM;
+	err = config_compiling_set(&of, w->setting, &d);
+	b = err ? NULL : interp_build_create(&of.build);
+	if (!err)
+		err = b ? interp_compile(text, &of.text, b, &lines, &d) :
+			  -ENOMEM;
 	if (err == -EINVAL)
 		rc = put_refusal(w->name, &d);
 	else if (err == 0)

@@ -28,6 +28,7 @@ struct work {
 					 * tells its dialect */
 	const char *start;		/* check: eight places, mm; NULL: those
 					 * of the machine file */
+	const char *setting;		/* check: interp/setting.h */
 	uint64_t program;		/* path: the number of the program */
 	double tolerance_mm;		/* 0: by the extent of the path */
 };

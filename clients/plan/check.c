@@ -211,17 +211,6 @@ int check_clearance(const struct job *j, const double end[INTERP_NAXES],
 	return 0;
 }
 
-/* -- --check -------------------------------------------------------------- */
-
-static void say_axes(const struct job *j, const double q[INTERP_NAXES], FILE *f)
-{
-	const uint32_t moves = motion_moves(&j->motion);
-
-	for (int k = 0; k < INTERP_NAXES; k++)
-		if (moves & 1u << k)
-			fprintf(f, " %c%.4f", INTERP_AXIS_LETTERS[k], q[k]);
-}
-
 void check_say_left(const struct check_result *r, FILE *f)
 {
 	if (!(r->pair.mm > 0))
@@ -235,81 +224,4 @@ void check_say_left(const struct check_result *r, FILE *f)
 			r->wanted_mm);
 	if (r->lift)
 		fputs(" in a lift beside the path", f);
-}
-
-static void say_contact(const struct job *j, const struct route *w,
-			const struct check_result *r)
-{
-	const struct route_node *n = &w->node[r->block + 1];
-
-	if (r->inside) {
-		printf("%s: not free: %s at the start, at", j->o->program,
-		       r->say);
-	} else if (r->given_up) {
-		printf("%s:%u: not proved: given up, out of memory or after "
-		       "millions of steps; a shorter block, or coarser meshes, "
-		       "at", j->o->program, n->line);
-	} else {
-		printf("%s:%u: not free: ", j->o->program, n->line);
-		check_say_left(r, stdout);
-		printf(", %.1f %% along %s, at", 100 * r->t,
-		       r->lift ? "its leg" : "the block");
-	}
-	say_axes(j, r->q, stdout);
-	putchar('\n');
-	if (!r->inside && !r->given_up)
-		job_say_pair(j, &r->pair, stdout);
-}
-
-static int say_result(const struct job *j, const struct route *w,
-		      const struct check_result *r)
-{
-	if (!r->ok) {
-		say_contact(j, w, r);
-		return 1;
-	}
-	printf("proved     %u blocks keep %.3f mm%s, and so do jumps and "
-	       "retracts\n", w->n - 1, j->clear_mm,
-	       j->o->end_zone_mm > 0 ? " but in the end zone" : "");
-	if (w->nlifts)
-		printf("           along them and beside them, from "
-		       "everywhere\n");
-	printf("           %.4f mm more are kept for pulses and arcs\n",
-	       r->most_added_mm);
-	printf("least seen %.4f mm, line %u; %llu queries\n", r->least_mm,
-	       w->node[r->least_block + 1].line,
-	       (unsigned long long)r->queries);
-	if (job_are_apart(j, r->least_mm))
-		printf("           That is more than one of the bodies is "
-		       "long: are unit and\n           place of the meshes "
-		       "right?  --unit, --part-at, --electrode-at\n");
-	return 0;
-}
-
-int check_program(struct job *j)
-{
-	const struct route_text from = { .path = j->o->program,
-				       .dialect = j->o->dialect };
-	struct check_result result;
-	struct clearance c;
-	struct route w;
-	int err = route_read(&w, &j->config, &from);
-
-	if (err)
-		return err;
-	if (!job_moves_known(j, &w, j->o->program)) {
-		err = EX_DATAERR;
-	} else {
-		check_clearance(j, w.node[w.n - 1].q, &c);
-		if (!j->o->quiet)
-			job_describe(j, stdout);
-		err = check_way(j, &w, &c, &result);
-		if (err == -EINTR)
-			fprintf(stderr, "edm-plan: interrupted; nothing is "
-				"proved\n");
-		err = err == -ENOMEM ? EX_OSERR : err ? 1 :
-		      say_result(j, &w, &result);
-	}
-	route_free(&w);
-	return err;
 }

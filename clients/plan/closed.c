@@ -135,6 +135,15 @@ static bool may_pass(struct flood *f, const double q[INTERP_NAXES])
 	return keep <= 0 || !near_below(&f->j->bodies, &pose, keep, &f->pair);
 }
 
+/* Does the machine stand in the cube, wherever that is? */
+static bool is_start(const struct flood *f, const double q[INTERP_NAXES])
+{
+	for (int k = INTERP_X; k <= INTERP_Z; k++)
+		if (fabs(q[k] - f->j->config.start_mm[k]) > f->side_mm / 2)
+			return false;
+	return true;
+}
+
 static void show(const struct flood *f, uint32_t looked, uint32_t most)
 {
 	char text[80];
@@ -156,7 +165,7 @@ static int fill(struct flood *f, uint32_t most)
 		middle(f, &f->cell[i], q);
 		if (i > 0 && !may_pass(f, q))
 			continue;
-		if (outward_is_out(f->j, q))
+		if (outward_is_out(f->j, q) || is_start(f, q))
 			return 0;
 		if (add_beside(f, f->cell[i]))
 			return -ENOMEM;

@@ -12,6 +12,7 @@
 #include "free.h"
 #include "lp.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -60,7 +61,8 @@ void contact_look(struct contact *c, const double q[INTERP_NAXES],
 
 	memcpy(c->q, q, sizeof(c->q));
 	motion_pose(&c->j->motion, q, &pose);
-	c->least_mm = near_distance(&c->j->bodies, &pose, &c->nearest);
+	near_less(&c->j->bodies, &pose, DBL_MAX, &c->nearest);
+	c->least_mm = c->nearest.mm;
 	near_set_collect(&c->j->bodies, &pose, fmax(c->least_mm,
 			 c->keep_mm + 2 * room_mm) + NEAR_MM, &set);
 	c->n = 0;

@@ -256,8 +256,9 @@ static void describe_body(const char *what, const struct mesh *m,
 		fprintf(out, "           %u triangles without area are "
 			"removed\n", f->degenerate);
 	if (f->joined)
-		fprintf(out, "           %u edges that nearly meet are joined, "
-			"by %.4f mm at most\n", f->joined, f->joined_mm);
+		fprintf(out, "           %u corners that nearly meet are "
+			"joined, by %.4f mm at most\n", f->joined,
+			f->joined_mm);
 	describe_turned(m, f, out);
 	if (f->open)
 		fprintf(out, "           %u open edges: it has no inside\n",

@@ -178,6 +178,12 @@ static int judge(const struct job_options *o)
 	if ((o->check || o->measure) && o->end_given)
 		return refuse("--end-pose", "beside --check or --measure",
 			      "a PROGRAM");
+	if ((o->check || o->measure) && o->output)
+		return refuse("--output", "beside --check or --measure",
+			      "--report, --picture or --view, beside --check");
+	if (o->measure && (o->report || o->picture || o->view))
+		return refuse("--report, --picture or --view", "beside "
+			      "--measure", "the distances on standard output");
 	if (!o->check && !o->measure && !o->output)
 		return refuse("--output", "is missing", "--output FILE, or "
 			      "--check");

@@ -30,8 +30,8 @@ struct mesh_findings {
 	uint32_t doubled;		/* triangles that were there twice;
 					 * removed */
 	uint32_t degenerate;		/* triangles without area; removed */
-	uint32_t joined;		/* edges whose ends were moved
-					 * together */
+	uint32_t joined;		/* corners that were moved onto
+					 * others */
 	double joined_mm;		/* the most that a corner was moved */
 	uint32_t turned;		/* triangles that ran the other way than
 					 * the first one of their shell */

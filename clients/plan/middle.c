@@ -57,8 +57,8 @@ static void to_middle(struct contact *c, const double along[INTERP_NAXES],
 			return;
 		contact_to(c, s, to);
 		motion_pose(&c->j->motion, to, &pose);
-		if (near_distance(&c->j->bodies, &pose, &pair) >
-		    c->least_mm + WORTH_MM)
+		if (!near_less(&c->j->bodies, &pose, c->least_mm + WORTH_MM,
+			       &pair))
 			memcpy(q, to, sizeof(c->q));
 		else
 			room_mm /= 4;

@@ -184,7 +184,8 @@ bool near_below(const struct bodies *b, const struct pose *pose, double mm,
 bool near_less(const struct bodies *b, const struct pose *pose, double mm,
 	       struct near_pair *pair)
 {
-	struct walk w = { .b = b, .pose = pose, .best = mm, .pair = pair };
+	struct walk w = { .b = b, .pose = pose, .best = mm, .pair = pair,
+			  .slack = NEAR_SLACK_MM };
 
 	walk_all(&w);
 	return w.best < mm;

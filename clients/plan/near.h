@@ -52,8 +52,13 @@ double near_distance(const struct bodies *b, const struct pose *pose,
 bool near_below(const struct bodies *b, const struct pose *pose, double mm,
 		struct near_pair *pair);
 
-/** near_less() - find the nearest pair if it is nearer than @mm; otherwise
- *  @pair stays as it is.  Return: was there one? */
+#define NEAR_SLACK_MM		0.0005
+
+/** near_less() - find a pair that is nearer than @mm, and farther than the
+ *  nearest one by NEAR_SLACK_MM at most; otherwise @pair stays as it is.  One
+ *  that is nearer than @mm by less may be missed.  Where walls face each other
+ *  many pairs are equally near but for rounding, and near_distance() looks at
+ *  all of them.  Return: was one found? */
 bool near_less(const struct bodies *b, const struct pose *pose, double mm,
 	       struct near_pair *pair);
 

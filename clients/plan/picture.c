@@ -18,6 +18,7 @@
 #define SIDE		460.0		/* of either picture */
 #define TRIS_MAX	60000		/* drawn of a body */
 #define POSES		24		/* of a block, in the curve */
+#define GHOSTS		24		/* of a way of many nodes */
 
 struct view {
 	double u[3], v[3];		/* right and up */
@@ -95,8 +96,21 @@ static void put_shadow(FILE *f, const struct view *w, const struct mesh *m,
 	fputs("\"/>\n", f);
 }
 
+static void put_ghost(FILE *f, const struct plan *p, const struct view *w,
+		      const double q[INTERP_NAXES], const char *colour)
+{
+	char style[160];
+	struct pose pose;
+
+	motion_pose(&p->j->motion, q, &pose);
+	snprintf(style, sizeof(style), "fill=\"%s\" fill-opacity=\"0.3\"",
+		 colour);
+	put_shadow(f, w, &p->j->tool, &pose, style);
+}
+
 static void put_way(FILE *f, const struct plan *p)
 {
+	const uint32_t last = p->best.n - 1, step = last / GHOSTS + 1;
 	const struct pose still = { .r = { { { 1, 0, 0 }, { 0, 1, 0 },
 					     { 0, 0, 1 } } } };
 	struct view w;
@@ -104,16 +118,11 @@ static void put_way(FILE *f, const struct plan *p)
 	choose_view(p, &w);
 	put_shadow(f, &w, &p->j->part, &still, "fill=\"#99a\" fill-opacity="
 		   "\"0.3\"");
-	for (uint32_t i = 0; i < p->best.n; i++) {
-		char style[160];
-		struct pose pose;
-
-		motion_pose(&p->j->motion, p->best.q[i], &pose);
-		snprintf(style, sizeof(style), "fill=\"%s\" fill-opacity="
-			 "\"0.3\"", i == 0 ? "#c60" :
-			 i + 1 == p->best.n ? "#063" : "#06c");
-		put_shadow(f, &w, &p->j->tool, &pose, style);
-	}
+	for (uint32_t i = 0; i < last; i += step)
+		put_ghost(f, p, &w, p->best.q[i], i == 0 ? "#c60" : "#06c");
+	put_ghost(f, p, &w, p->best.q[last], "#063");
+	if (p->contact)
+		put_ghost(f, p, &w, p->contact, "#c00");
 }
 
 static double distance(const struct plan *p, uint32_t i, int k)
@@ -201,7 +210,9 @@ int picture_put(const struct plan *p)
 		2 * SIDE + 40, SIDE + 10);
 	put_way(f, p);
 	fprintf(f, "<text x=\"10\" y=\"20\">start orange, nodes blue, end "
-		"green: %u blocks, proved %.3f mm</text>\n", p->best.n - 1,
+		"green%s</text>\n<text x=\"10\" y=\"36\">%u blocks, %s "
+		"%.3f mm</text>\n", p->contact ? ", first contact red" : "",
+		p->best.n - 1, p->best.how ? "proved" : "least seen",
 		p->best.least_mm);
 	put_curve(f, p);
 	fputs("</svg>\n", f);

@@ -7,6 +7,7 @@
 #ifndef PLAN_PLAN_H
 #define PLAN_PLAN_H
 
+#include "check.h"
 #include "fewest.h"
 #include "free.h"
 
@@ -52,6 +53,8 @@ struct plan {
 	struct near_pair nearest;	/* of the last block that was refused */
 	double dense_pass_s, dense_stop_s;
 	struct plan_way greedy, fewest, best;
+	const double *contact;		/* --check: the axes at the first
+					 * contact of `best`; NULL: none */
 	bool trial;			/* `best` will not be written */
 	struct plan_pivot pivot;
 	uint64_t queries;
@@ -124,6 +127,8 @@ void plan_describe(const struct plan *p);
 /** report_put(), picture_put(), view_put() - write these files if they are
  *  asked for. */
 int report_put(const struct plan *p);
+int report_put_check(const struct job *j, const struct route *w,
+		     const struct check_result *r);
 int picture_put(const struct plan *p);
 int view_put(const struct plan *p);
 

@@ -20,6 +20,9 @@
  * precision could not tell its share of PROVE_FINE_MM from nothing. */
 #define LEAST_MOST_MM	100.0
 
+/* A pose costs far less than a proof does before it comes to a contact. */
+#define REFUTE_POSES	8
+
 /* -- What is to be kept --------------------------------------------------- */
 
 void clearance_init(struct clearance *c, double mm)
@@ -116,15 +119,22 @@ bool prove_block(const struct bodies *bodies, const struct block *b,
 	return kept > 0;
 }
 
+/* 1/2, 1/4, 3/4, 1/8 ... for 1, 2, 3, 4 ...: the middle first, where a block is
+ * farthest from the path. */
+static double halved(unsigned int i)
+{
+	double ret = 0;
+
+	for (double bit = 0.5; i; i >>= 1, bit /= 2)
+		ret += i & 1 ? bit : 0;
+	return ret;
+}
+
 bool prove_refuted(const struct bodies *bodies, const struct block *b,
 		   const struct clearance *c, struct proof *p)
 {
-	/* The middle first: there a block is farthest from the path.  More than
-	 * a few poses would cost more than the proof. */
-	static const int order[] = { 8, 4, 12 };
-
-	for (unsigned int i = 0; i < sizeof(order) / sizeof(order[0]); i++) {
-		const double t = order[i] / 16.0;
+	for (unsigned int i = 1; i < REFUTE_POSES; i++) {
+		const double t = halved(i);
 		struct pose pose;
 
 		block_pose(b, t, &pose, NULL);

@@ -4,7 +4,8 @@
  *
  * Nobody must take the first half of a program, left by a full disk, for a
  * program.  So a file is written beside its place and then moved there.  A pipe
- * or a device is written to directly.
+ * or a device is written to directly.  Where standard output is one of the
+ * files, what is printed for a person goes to standard error.
  */
 #include "plan.h"
 
@@ -14,6 +15,9 @@
 #include <sys/stat.h>
 #include <sysexits.h>
 #include <unistd.h>
+
+/* A file that is asked for as -. */
+static int standard_output = STDOUT_FILENO;
 
 static int say(const char *path, int err, int exit)
 {
@@ -27,8 +31,6 @@ static int put_stream(FILE *f, const char *text)
 {
 	int err = fputs(text, f) < 0 || fflush(f) ? errno : 0;
 
-	if (f == stdout)
-		return err;
 	if (err == 0 && fsync(fileno(f)) && errno != EINVAL && errno != EROFS)
 		err = errno;
 	return fclose(f) && err == 0 ? errno : err;
@@ -70,13 +72,15 @@ static int put_beside(const char *path, const char *text)
 
 int put_text(const char *path, const char *text)
 {
-	FILE *f = strcmp(path, "-") == 0 ? stdout : NULL;
+	const bool standard = strcmp(path, "-") == 0;
 	int err;
 
-	if (!f && !is_special(path)) {
+	if (!standard && !is_special(path)) {
 		err = put_beside(path, text);
 	} else {
-		f = f ? f : fopen(path, "w");
+		FILE *f = standard ? fdopen(standard_output, "w") :
+				     fopen(path, "w");
+
 		err = f ? put_stream(f, text) : errno;
 	}
 	if (err == 0)
@@ -114,6 +118,14 @@ static int try_folder(const char *path)
 	return err;
 }
 
+static int keep_standard_output(void)
+{
+	standard_output = dup(STDOUT_FILENO);
+	return standard_output < 0 ||
+	       dup2(STDERR_FILENO, STDOUT_FILENO) < 0 ?
+		       say("-", errno, EX_CANTCREAT) : 0;
+}
+
 int put_check(const struct job_options *o)
 {
 	const char *const out[] = { o->output, o->report, o->picture, o->view };
@@ -137,6 +149,8 @@ int put_check(const struct job_options *o)
 			}
 		}
 		err = out[i] ? try_folder(out[i]) : 0;
+		if (err == 0 && out[i] && strcmp(out[i], "-") == 0)
+			err = keep_standard_output();
 	}
 	return err;
 }

@@ -123,21 +123,40 @@ static json_t *pivot(const struct plan *p)
 	return ret;
 }
 
+static int put(const char *path, json_t *o)
+{
+	char *text = o ? json_dumps(o, JSON_INDENT(1) |
+				       JSON_REAL_PRECISION(9)) : NULL;
+	int err;
+
+	json_decref(o);
+	if (!text)
+		return EX_OSERR;
+	err = put_text(path, text);
+	free(text);
+	return err;
+}
+
+static json_t *bodies(const struct job *j)
+{
+	return json_pack("{s:o,s:o,s:f,s:f}", "part",
+			 body(&j->part, &j->part_found), "electrode",
+			 body(&j->tool, &j->tool_found), "clearance_mm",
+			 j->clear_mm, "chord_mm", j->chord_mm);
+}
+
 int report_put(const struct plan *p)
 {
 	const struct job *j = p->j;
 	json_t *o;
-	char *text;
-	int err;
 
 	if (!j->o->report)
 		return 0;
-	o = json_pack("{s:o,s:o,s:f,s:f,s:f,s:o,s:I,s:f,s:b}", "part",
-		      body(&j->part, &j->part_found), "electrode",
-		      body(&j->tool, &j->tool_found), "clearance_mm",
-		      j->clear_mm, "chord_mm", j->chord_mm, "end_mm", p->end_mm,
-		      "dense", dense(p), "queries", (json_int_t)p->queries,
-		      "seconds", p->planned_s, "interrupted", p->stopped);
+	o = json_pack("{s:f,s:o,s:I,s:f,s:b}", "end_mm", p->end_mm, "dense",
+		      dense(p), "queries", (json_int_t)p->queries, "seconds",
+		      p->planned_s, "interrupted", p->stopped);
+	if (o)
+		json_object_update_new(o, bodies(j));
 	if (o && p->greedy.how)
 		json_object_set_new(o, "greedy", way(j, &p->greedy));
 	if (o && p->fewest.how)
@@ -146,12 +165,46 @@ int report_put(const struct plan *p)
 		json_object_set_new(o, "written", way(j, &p->best));
 	if (o && p->pivot.way.how)
 		json_object_set_new(o, "pivot", pivot(p));
-	text = o ? json_dumps(o, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) :
-		   NULL;
-	json_decref(o);
-	if (!text)
-		return EX_OSERR;
-	err = put_text(j->o->report, text);
-	free(text);
-	return err;
+	return put(j->o->report, o);
+}
+
+/* At the start one body may be inside the other: then there is no pair. */
+static json_t *contact(const struct job *j, const struct route *w,
+		       const struct check_result *r)
+{
+	json_t *ret = json_pack("{s:i,s:f,s:o,s:b,s:b}", "line",
+		(int)w->node[r->inside ? 0 : r->block + 1].line, "t", r->t,
+		"axes", axes(j, r->q), "in_lift", r->lift, "given_up",
+		r->given_up);
+
+	if (r->inside)
+		json_object_set_new(ret, "inside", json_string(r->say));
+	else if (!r->given_up)
+		json_object_update_new(ret, json_pack("{s:f,s:f,s:o,s:i,s:i}",
+			"distance_mm", r->pair.mm, "wanted_mm", r->wanted_mm,
+			"part_mm", point(r->pair.p), "part_triangle",
+			(int)j->part_tree.id[r->pair.part] + 1,
+			"electrode_triangle",
+			(int)j->tool_tree.id[r->pair.tool] + 1));
+	return ret;
+}
+
+int report_put_check(const struct job *j, const struct route *w,
+		     const struct check_result *r)
+{
+	json_t *o;
+
+	if (!j->o->report)
+		return 0;
+	o = json_pack("{s:b,s:i,s:I}", "proved", r->ok, "blocks",
+		      (int)w->n - 1, "queries", (json_int_t)r->queries);
+	if (o)
+		json_object_update_new(o, bodies(j));
+	if (o && !r->inside)
+		json_object_update_new(o, json_pack("{s:f,s:i}",
+			"least_seen_mm", r->least_mm, "least_line",
+			(int)w->node[r->least_block + 1].line));
+	if (o && !r->ok)
+		json_object_set_new(o, "contact", contact(j, w, r));
+	return put(j->o->report, o);
 }

@@ -2,9 +2,9 @@
 /*
  * stl.c - a mesh from an STL file, mended by admesh
  *
- * Corners that are equal become one.  Triangles that are there twice or have no
- * area are removed.  Edges that are a micrometre apart are joined.  Triangles
- * whose corners run backward are turned.  Nothing is made up: holes are not
+ * Triangles that are there twice or have no area are removed.  Where edges are
+ * open, corners that are up to a micrometre apart become one.  Triangles whose
+ * corners run backward are turned.  Nothing is made up: holes are not
  * filled, and no triangle is removed because its neighbours are missing.
  */
 #include "mesh.h"
@@ -19,7 +19,7 @@
 #include <string.h>
 #include <sysexits.h>
 
-#define JOIN_MM		0.001f
+#define JOIN_MM		0.001
 
 /* Two facets that meet at more than this meet at a true edge. */
 #define SMOOTH		(30 * PLAN_RADIAN)
@@ -59,54 +59,51 @@ static void scale(struct stl_raw *raw, const struct mesh_load *from)
 		}
 }
 
-static double most_moved(const stl_file *s, const stl_facet *was)
+static bool is_open(const stl_file *s)
 {
-	double most = 0;
-
-	for (int i = 0; i < s->stats.number_of_facets; i++) {
-		for (int k = 0; k < 3; k++) {
-			const stl_vertex *a = &was[i].vertex[k];
-			const stl_vertex *b = &s->facet_start[i].vertex[k];
-			const double d[3] = { (double)(a->x - b->x),
-					      (double)(a->y - b->y),
-					      (double)(a->z - b->z) };
-
-			most = fmax(most, v_length(d));
-		}
-	}
-	return most;
+	return s->stats.connected_facets_3_edge < s->stats.number_of_facets;
 }
 
-/* Corners are moved; how far goes into what is kept. */
-static int join_edges(stl_file *s, struct mesh_findings *f)
+/* Corners are moved where edges are open; how far goes into what is kept. */
+static int connect_edges(stl_file *s, struct stl_raw *raw,
+			 struct mesh_findings *f)
 {
-	const size_t n = (size_t)s->stats.number_of_facets;
-	stl_facet *was = malloc(n * sizeof(*was));
+	struct stl_welded welded;
+	uint32_t doubled;
+	int err = fill(s, raw);
 
-	if (!was)
-		return EX_OSERR;
-	memcpy(was, s->facet_start, n * sizeof(*was));
-	stl_check_facets_nearby(s, fminf(s->stats.shortest_edge, JOIN_MM));
-	f->joined = (uint32_t)s->stats.edges_fixed;
-	f->joined_mm = f->joined ? most_moved(s, was) : 0;
-	free(was);
+	if (err)
+		return err;
+	stl_check_facets_exact(s);
+	if (!is_open(s))
+		return 0;
+	stl_close(s);
+	stl_initialize(s);
+	err = stl_raw_weld(raw, JOIN_MM, &welded);
+	if (err == 0)
+		err = stl_raw_drop_doubles(raw, &doubled);
+	if (err == 0)
+		err = fill(s, raw);
+	if (err)
+		return err;
+	stl_check_facets_exact(s);
+	f->joined = welded.moved;
+	f->joined_mm = welded.most;
+	f->doubled += doubled;
 	return 0;
 }
 
-static int mend(stl_file *s, struct mesh_findings *f)
+static int mend(stl_file *s, struct stl_raw *raw, struct mesh_findings *f)
 {
-	int err = 0;
+	const int err = connect_edges(s, raw, f);
 
-	stl_check_facets_exact(s);
 	f->degenerate = (uint32_t)s->stats.degenerate_facets;
-	if (s->stats.number_of_facets < 4)
-		return 0;
-	if (s->stats.connected_facets_3_edge < s->stats.number_of_facets)
-		err = join_edges(s, f);
+	if (err || s->stats.number_of_facets < 4)
+		return err;
 	stl_fix_normal_directions(s);
 	f->turned = (uint32_t)s->stats.facets_reversed;
 	stl_generate_shared_vertices(s);
-	return err;
+	return 0;
 }
 
 static int take(struct mesh *m, const stl_file *s, const double shift[3])
@@ -203,17 +200,13 @@ static int mended(struct mesh *m, const struct mesh_load *from,
 	err = stl_raw_drop_doubles(raw, &f->doubled);
 	if (err)
 		return err;
-	err = fill(&s, raw);
-	if (err == 0) {
-		err = mend(&s, f);
-		if (s.stats.number_of_facets < 4) {
-			fprintf(stderr, "edm-plan: %s: %u triangles are left "
-				"of %u, the others have no area or are "
-				"there twice; a closed body\n", from->path,
-				(unsigned int)s.stats.number_of_facets,
-				f->in_file);
-			err = EX_DATAERR;
-		}
+	err = mend(&s, raw, f);
+	if (err == 0 && s.stats.number_of_facets < 4) {
+		fprintf(stderr, "edm-plan: %s: %u triangles are left of %u, "
+			"the others have no area or are there twice; a closed "
+			"body\n", from->path,
+			(unsigned int)s.stats.number_of_facets, f->in_file);
+		err = EX_DATAERR;
 	}
 	if (err == 0)
 		err = take(m, &s, from->shift_mm);

@@ -28,4 +28,13 @@ int stl_raw_read(const char *path, struct stl_raw *ret);
  *  Return: 0 or EX_OSERR. */
 int stl_raw_drop_doubles(struct stl_raw *raw, uint32_t *dropped);
 
+struct stl_welded {
+	uint32_t moved;			/* corners */
+	double most;			/* ... by so much */
+};
+
+/** stl_raw_weld() - corners that are no more than @within apart become one: the
+ *  first of them in the file.  Return: 0 or EX_OSERR. */
+int stl_raw_weld(struct stl_raw *raw, double within, struct stl_welded *ret);
+
 #endif /* PLAN_STL_RAW_H */

@@ -2,10 +2,13 @@
 /*
  * tree.c - build a tree of oriented boxes, from the top
  *
- * The axes of a box are those of the spread of its triangles' corners.  The
- * triangles are cut at their mean, across the longest axis of the box; in the
- * middle of the row where that leaves nearly all on one side.  Both are done in
- * single precision: a poor cut makes a tree slower, but never wrong.
+ * The axes of a box are those of the spread of its triangles' corners, or lie
+ * along an edge of a triangle if that makes the box smaller: a box that stands
+ * out of a wall or beyond its rim makes the wall seem nearer than it is.  For
+ * the same reason the triangles of a plane wall are cut from the others.  All
+ * others are cut at their mean, across the longest axis of the box; in the
+ * middle of the row where that leaves nearly all on one side.  All this is done
+ * in single precision: a poor cut makes a tree slower, but never wrong.
  */
 #include "tree.h"
 
@@ -18,6 +21,10 @@
 /* The spread of more triangles than that is told by so many of them. */
 #define SAMPLE		512u
 
+#define WALLS		4u		/* triangles whose planes are tried */
+#define WALL_LEAST	32u		/* triangles that can have a wall */
+#define FLAT		1e-4f		/* of the size: what lies in a plane */
+
 struct middle {
 	float at[3];			/* of a triangle, as seen from the
 					 * middle of the mesh */
@@ -28,6 +35,12 @@ struct build {
 	struct tree *t;
 	double mid[3];			/* of the mesh */
 	struct middle *middle;		/* in the tree's order */
+};
+
+/* Triangles that follow each other in the tree's order. */
+struct row {
+	const struct tree *t;
+	uint32_t from, n;
 };
 
 static void swap_tris(struct build *b, uint32_t i, uint32_t j)
@@ -101,23 +114,20 @@ static void principal(double m[3][3], struct rot *ret)
 	v_cross(axis[0], axis[1], axis[2]);
 }
 
-/* One triangle lies along its longest edge. Return: false if it is too thin to
- * have a normal. */
-static bool lie_along(const struct triangle *t, struct rot *ret)
+/* In the plane of a triangle, along its edge @k.  Return: false if it is too
+ * thin to have a normal. */
+static bool lie_along(const struct triangle *t, int k, struct rot *ret)
 {
-	double edge[3][3], n[3], size[3];
-	int k = 0;
+	double u[3], v[3], n[3], size;
 
-	for (int i = 0; i < 3; i++) {
-		v_sub(t->at[(i + 1) % 3], t->at[i], edge[i]);
-		size[i] = v_length(edge[i]);
-		k = size[i] > size[k] ? i : k;
-	}
-	v_cross(edge[0], edge[1], n);
-	if (!(v_length(n) > 1e-6 * size[k] * size[k]))
+	v_sub(t->at[(k + 1) % 3], t->at[k], u);
+	v_sub(t->at[(k + 2) % 3], t->at[k], v);
+	v_cross(u, v, n);
+	size = v_length(u);
+	if (!(v_length(n) > 1e-6 * fmax(size * size, v_dot(v, v))))
 		return false;
 	for (int i = 0; i < 3; i++) {
-		ret->m[0][i] = edge[k][i] / size[k];
+		ret->m[0][i] = u[i] / size;
 		ret->m[2][i] = n[i] / v_length(n);
 	}
 	v_cross(ret->m[2], ret->m[0], ret->m[1]);
@@ -210,23 +220,64 @@ static void close_box(struct box *b, const double o[3], box_v4 lo, box_v4 hi)
 	}
 }
 
-/* The box along its axes that holds them. */
-static void enclose(const struct tree *t, uint32_t from, uint32_t n,
-		    struct box *b)
+/* From where to where @many of them reach along the axes of @b, as seen from
+ * the first corner. */
+static void reach(const struct row *r, uint32_t many, const struct box *b,
+		  box_v4 ret[2])
 {
-	const double *o = t->tri[from].at[0];
+	const double *o = r->t->tri[r->from].at[0];
 	box_v4 lo = { 0 }, hi = { 0 };
 
-	for (uint32_t i = from; i < from + n; i++) {
-		for (int k = 0; k < 3; k++) {
-			const box_v4 d = seen_from(o, t->tri[i].at[k]);
-			const box_v4 at = box_along(b->axis, d[0], d[1], d[2]);
+	for (uint32_t i = 0; i < many; i++) {
+		const struct triangle *t = &r->t->tri[r->from];
 
-			lo = choose(at < lo, at, lo);
-			hi = choose(at > hi, at, hi);
+		t += many < r->n ? sampled(i, r->n) : i;
+		for (int k = 0; k < 3; k++) {
+			const box_v4 d = seen_from(o, t->at[k]);
+			const box_v4 x = box_along(b->axis, d[0], d[1], d[2]);
+
+			lo = choose(x < lo, x, lo);
+			hi = choose(x > hi, x, hi);
 		}
 	}
-	close_box(b, o, lo, hi);
+	ret[0] = lo;
+	ret[1] = hi;
+}
+
+/* The sum of its sides if it lies along @axis. */
+static float sides(const struct row *r, const struct rot *axis)
+{
+	struct box b = { 0 };
+	box_v4 to[2];
+
+	take_axes(axis, &b);
+	reach(r, r->n < SAMPLE ? r->n : SAMPLE, &b, to);
+	to[1] -= to[0];
+	return to[1][0] + to[1][1] + to[1][2];
+}
+
+/* Those of the spread, or along an edge of the first of them: along which their
+ * box is smallest. */
+static void choose_axes(const struct row *r, double mean[3], struct rot *ret)
+{
+	double m[3][3];
+	float least;
+
+	spread(r->t, r->from, r->n, mean, m);
+	principal(m, ret);
+	least = sides(r, ret);
+	for (int k = 0; k < 3; k++) {
+		struct rot axis;
+		float sum;
+
+		if (!lie_along(&r->t->tri[r->from], k, &axis))
+			continue;
+		sum = sides(r, &axis);
+		if (sum < least) {
+			least = sum;
+			*ret = axis;
+		}
+	}
 }
 
 /* -- Cutting -------------------------------------------------------------- */
@@ -238,58 +289,108 @@ static int longest(const struct box *b)
 	return b->half[2] > b->half[k] ? 2 : k;
 }
 
-/* Those below the plane come first. Return: how many. */
-static uint32_t cut(struct build *b, uint32_t from, uint32_t n,
-		    const double normal[3], const double through[3])
+/* What lies between two planes, as seen from the middle of the mesh. */
+struct slab {
+	float normal[3], low, high;
+};
+
+static bool is_in(const struct slab *s, const float p[3])
 {
-	const float x = (float)normal[0], y = (float)normal[1];
-	const float z = (float)normal[2];
-	const float height = (float)(v_dot(normal, through) -
-				     v_dot(normal, b->mid));
-	uint32_t below = 0;
+	const float at = s->normal[0] * p[0] + s->normal[1] * p[1] +
+			 s->normal[2] * p[2];
+
+	return at >= s->low && at < s->high;
+}
+
+static float take_normal(const struct build *b, const double normal[3],
+			 const double through[3], struct slab *s)
+{
+	for (int k = 0; k < 3; k++)
+		s->normal[k] = (float)normal[k];
+	return (float)(v_dot(normal, through) - v_dot(normal, b->mid));
+}
+
+/* The plane in which most of them lie, of some. Return: is it a wall, with
+ * enough on it and beside it? */
+static bool find_wall(const struct build *b, uint32_t from, uint32_t n,
+		      float size, struct slab *ret)
+{
+	const uint32_t many = n < SAMPLE ? n : SAMPLE;
+	uint32_t most = 0;
+
+	for (uint32_t c = 0; c < WALLS && n >= WALL_LEAST; c++) {
+		const struct triangle *x = &b->t->tri[from + c * n / WALLS];
+		struct slab s;
+		struct rot lie;
+		uint32_t in = 0;
+		float height;
+
+		if (!lie_along(x, 0, &lie))
+			continue;
+		height = take_normal(b, lie.m[2], x->at[0], &s);
+		s.low = height - FLAT * size;
+		s.high = height + FLAT * size;
+		for (uint32_t i = 0; i < many; i++)
+			in += is_in(&s, b->middle[from + sampled(i, n)].at);
+		if (in > most) {
+			most = in;
+			*ret = s;
+		}
+	}
+	return most > many / 8 && most < many - many / 8;
+}
+
+/* Those in the slab come first. Return: how many. */
+static uint32_t cut(struct build *b, uint32_t from, uint32_t n,
+		    const struct slab *s)
+{
+	uint32_t in = 0;
 
 	for (uint32_t i = 0; i < n; i++) {
-		const float *p = b->middle[from + i].at;
-
-		if (x * p[0] + y * p[1] + z * p[2] >= height)
+		if (!is_in(s, b->middle[from + i].at))
 			continue;
-		if (i != below)
-			swap_tris(b, from + i, from + below);
-		below++;
+		if (i != in)
+			swap_tris(b, from + i, from + in);
+		in++;
 	}
 	/* All on one side, or far too many: any halves will do. */
-	if (below < n / 16 + 1 || below > n - n / 16 - 1)
-		below = n / 2;
-	return below;
+	if (in < n / 16 + 1 || in > n - n / 16 - 1)
+		in = n / 2;
+	return in;
 }
 
 static void split(struct build *b, uint32_t node, uint32_t from, uint32_t n)
 {
+	const struct row r = { b->t, from, n };
 	struct box *x = &b->t->node[node];
-	double mean[3], m[3][3];
+	struct slab s;
+	double mean[3];
 	struct rot axis;
-	uint32_t below;
+	box_v4 to[2];
+	uint32_t in;
 	int along;
 
-	if (n > 1 || !lie_along(&b->t->tri[from], &axis)) {
-		spread(b->t, from, n, mean, m);
-		principal(m, &axis);
-	}
+	choose_axes(&r, mean, &axis);
 	*x = (struct box) { 0 };
 	take_axes(&axis, x);
-	enclose(b->t, from, n, x);
+	reach(&r, n, x, to);
+	close_box(x, b->t->tri[from].at[0], to[0], to[1]);
 	if (n <= TREE_LEAF) {
 		x->first = from;
 		x->n = n;
 		return;
 	}
 	along = longest(x);
-	below = cut(b, from, n, axis.m[along], mean);
+	if (!find_wall(b, from, n, x->half[along], &s)) {
+		s.low = -FLT_MAX;
+		s.high = take_normal(b, axis.m[along], mean, &s);
+	}
+	in = cut(b, from, n, &s);
 	x->first = b->t->nnodes;
 	x->n = 0;
 	b->t->nnodes += 2;
-	split(b, x->first, from, below);
-	split(b, x->first + 1, from + below, n - below);
+	split(b, x->first, from, in);
+	split(b, x->first + 1, from + in, n - in);
 }
 
 static void lay_planes(struct tree *t)

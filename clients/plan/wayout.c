@@ -214,6 +214,16 @@ static bool lift(const struct wayout *t, uint32_t axis, double sign,
 	return true;
 }
 
+/* The machine may stand in the part, in a bowl: it comes from there. */
+static void try_start(struct wayout *t, uint32_t point)
+{
+	const double *start = t->asked->j->config.start_mm;
+
+	if (t->out == UINT32_MAX && !outward_is_out(t->asked->j, start) &&
+	    is_free(t, t->point[point].q, start))
+		t->out = add_point(t, start, point);
+}
+
 static void try_lifts(struct wayout *t, uint32_t point)
 {
 	for (uint32_t i = 0; i < 2 * t->at.axes.n; i++) {
@@ -404,8 +414,10 @@ static void go(struct wayout *t, const struct slide *x)
 			break;
 	}
 	if (s.point != begin && s.point != UINT32_MAX &&
-	    add_state(t, s.point, depth))
+	    add_state(t, s.point, depth)) {
 		try_lifts(t, s.point);
+		try_start(t, s.point);
+	}
 }
 
 /* -- The tree ------------------------------------------------------------- */
@@ -491,6 +503,7 @@ int wayout_find(const struct wayout_asked *asked, struct route *out,
 	contact_init(&t.at, asked->j, asked->end, asked->c->mm);
 	if (add_point(&t, asked->end, UINT32_MAX) == 0 && add_state(&t, 0, 0)) {
 		try_lifts(&t, 0);
+		try_start(&t, 0);
 		grow(&t);
 	}
 	if (t.no_memory)

@@ -97,6 +97,7 @@ static void write_variables(FILE *f, const struct data *d)
 		t->time.max, t->place.min, t->place.max, t->cuts,
 		t->cuts ? t->cut_min : t->place.min, t->jumps.seen,
 		t->retracts.seen, t->jumps.seen <= FEW_JUMPS);
+	fprintf(f, "rides = %d\n", !d->o->upper_by_places);
 	fprintf(f, "has_cut = %d\nhas_positioned = %d\nservo_v = %.9g\n"
 		"short_v = %.9g\nopen_v = %.9g\n", has_pieces(t, true),
 		has_pieces(t, false), d->o->servo_v, d->o->short_v,

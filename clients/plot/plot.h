@@ -29,6 +29,8 @@ struct plot_options {
 	double servo_v;		/* levels drawn over the gap voltage; */
 	double short_v;		/* 0: not drawn */
 	double open_v;
+	bool upper_by_places;	/* U V are places of the upper guide, not how
+				 * far it is from above X Y */
 };
 
 /* One cycle. */

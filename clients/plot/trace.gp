@@ -7,7 +7,7 @@
 #
 #	svg, title_text, rows, t_min t_max (s), s_min s_max cut_min (mm),
 #	cuts, jumps, retracts, few, has_cut, has_positioned, strip_s,
-#	servo_v short_v open_v (0: not drawn), zoom_n zoom_jumps zoom_from zoom_to,
+#	servo_v short_v open_v (0: not drawn), rides (U V count from X Y), zoom_n zoom_jumps zoom_from zoom_to,
 #	axis_min[] axis_max[] (X Y Z A B C U V), nstates, states, in_state[] (rows), in_zoom[],
 #	gap_... and feed_...: min max low high n
 #	$place $gap $feed, and each with ...mean: time, least, greatest, mean
@@ -87,11 +87,12 @@ do for [group = 1:3] {
 }
 if (seen == 0) { seen = 2; view[1] = 1; view[2] = 2 }
 solid = seen == 3
-# On a wire machine U V are how far the upper guide is from above X Y.
+# On a wire machine U V are the upper guide: how far it is from above X Y, or its
+# place.
 guided = !solid && has_cut && view[1] == 1 && view[2] == 2 && span(7) + span(8) > 0
 if (guided) {
 	do for [k = 1:2] {
-		stats $path1 using (column(k) + column(k + 6)) nooutput
+		stats $path1 using (rides * column(k) + column(k + 6)) nooutput
 		if (STATS_min < axis_min[k]) { axis_min[k] = STATS_min }
 		if (STATS_max > axis_max[k]) { axis_max[k] = STATS_max }
 		most = larger(most, span(k))
@@ -147,7 +148,7 @@ if (jumps > 0) cmd = cmd.sprintf("$jumpat %s with points pt 6 ps %f lw 1.3 lc rg
 if (retracts > 0) cmd = cmd.sprintf("$retractat %s with points pt 9 ps %f lc rgb '%s' title 'retracts: %d', ", u, mark_size(retracts), orange, retracts)
 if (has_positioned) cmd = cmd.sprintf("$path0 %s with lines lw 1.4 dt (6,4) lc rgb '#999999' title 'positioned', ", u)
 if (has_cut) cmd = cmd.sprintf("$path1 %s with lines lw 2.2 lc rgb '%s' title 'cut', ", u, blue)
-if (guided) cmd = cmd."$path1 using ($1 + $7):($2 + $8) with lines lw 1.2 lc rgb green title 'upper guide', "
+if (guided) cmd = cmd."$path1 using (rides * $1 + $7):(rides * $2 + $8) with lines lw 1.2 lc rgb green title 'upper guide', "
 cmd = cmd.sprintf("$begin %s with points pt 7 ps 1.3 lc rgb '#202020' title 'start', ", u)
 cmd = cmd.sprintf("$end %s with points pt 5 ps 1.2 lc rgb '#202020' title 'farthest'", u)
 eval cmd

@@ -201,6 +201,10 @@ static int compile(struct sim_job *job, const struct sim_options *o,
 	int err;
 
 	config_compiling(c, &with->tech, &of);
+	if (config_compiling_set(&of, o->setting, &diag)) {
+		interp_diag_tell(&diag, o->job);
+		return EX_DATAERR;
+	}
 	of.text.nc.notes = &notes;
 	of.text.nc.refused = o->check ? &refused : NULL;
 	inside = begins_inside(o, c, &of, &from);

@@ -70,13 +70,17 @@ static int configure(struct machine_config *c, const struct sim_options *o)
 	return 0;
 }
 
+static FILE *for_person(const struct sim_options *o)
+{
+	return o->report && strcmp(o->report, "-") == 0 ? stderr : stdout;
+}
+
 static int finish(struct sim_run *r)
 {
-	const bool to_stdout = r->o->report && strcmp(r->o->report, "-") == 0;
 	int err = 0;
 
 	if (!r->o->quiet)
-		report_print(r, to_stdout ? stderr : stdout);
+		report_print(r, for_person(r->o));
 	if (r->o->report)
 		err = report_write(r);
 	if (err == 0 && r->o->plot)
@@ -96,12 +100,6 @@ static int print_tech(const struct sim_options *o,
 	return err;
 }
 
-static int check(const struct sim_run *r)
-{
-	job_describe(&r->job, stdout);
-	return plan_print(&r->job, r->config, stdout);
-}
-
 static int run_whole(struct sim_run *r)
 {
 	const bool wanted = r->o->report && r->o->dry_run;
@@ -116,6 +114,18 @@ static int run_whole(struct sim_run *r)
 	else
 		tune_contour_measure(r);
 	return err ? err : finish(r);
+}
+
+/* Files are those of a dry run, of which nothing more is printed. */
+static int check(struct sim_run *r, struct sim_options *o)
+{
+	int err;
+
+	job_describe(&r->job, for_person(o));
+	err = plan_print(&r->job, r->config, for_person(o));
+	o->quiet = true;
+	return err || !(o->report || o->plot || o->trace || o->pulses) ?
+		       err : run_whole(r);
 }
 
 int main(int argc, char **argv)
@@ -142,7 +152,7 @@ int main(int argc, char **argv)
 	run.config = &config;
 	err = job_load(&run.job, &o, &config);
 	if (err == 0 && o.check)
-		err = check(&run);
+		err = check(&run, &o);
 	else if (err == 0 && o.tune)
 		err = tune_contour(&run);
 	else if (err == 0 && o.emit)

@@ -4,6 +4,7 @@
 
 #include "cmdline.h"
 #include "names.h"
+#include "interp/setting_text.h"
 
 #include <math.h>
 #include <string.h>
@@ -114,6 +115,24 @@ static const struct cmdline_row rows[] = {
 	  "unit of a 3B or 4B program (machine file's, 1)" },
 	{ "offset-um", "N", NUMBER(offset_um, 0, 10000), .help =
 	  "offset of the wire, for 4B (machine file's, 0)" },
+	{ "wire-offset", "MM", WORD(set[INTERP_SET_WIRE]), .help =
+	  "set for a 3B program: the wire left of its contour,\n"
+	  "below 0 right of it (machine file's, 0)" },
+	{ "taper", "DEG", WORD(set[INTERP_SET_TAPER]), .help =
+	  "set for it: the top leans to the left, below 0 to the\n"
+	  "right; of NC code under its G41 or G42 (machine file's\n"
+	  "for 3B and 4B, 0)" },
+	{ "plane", "MM", WORD(set[INTERP_SET_PLANE]), .help =
+	  "set for it: height of the plane of X Y (machine file's)" },
+	{ "second-plane", "MM", WORD(set[INTERP_SET_SECOND]), .help =
+	  "set for it: height of the plane of U V (machine file's)" },
+	{ "scale", "X", WORD(set[INTERP_SET_SCALE]), .help =
+	  "set for it: by so much larger (machine file's, 1)" },
+	{ "turn", "DEG", WORD(set[INTERP_SET_TURN]), .help =
+	  "set for it: turned about its start, from X toward Y\n"
+	  "(machine file's, 0)" },
+	{ "mirror", "AXIS", WORD(set[INTERP_SET_MIRROR]), .help =
+	  "set for it: x, y or exchange (machine file's, none)" },
 	{ "emit", "FORMAT", CALL(take_emit), .help =
 	  "3b, 4b or iso: write the job to stdout, do not run it" },
 	{ "strategy", "NAME", CALL(take_strategy), .help =
@@ -159,7 +178,8 @@ static const struct cmdline_row rows[] = {
 	  "find the gains of [contour] method on models of the\n"
 	  "axes along this job, and print them" },
 	{ "check", NULL, FLAG(check), .help =
-	  "only read and compile; print what the job would do" },
+	  "only read and compile; print what the job would do;\n"
+	  "the files that are asked for are those of --dry-run" },
 	{ "tune", NULL, FLAG(tune_servo), .help =
 	  "find the best servo and jump values and print them as\n"
 	  "lines of a machine file; --seed, --limit-s (60)" },
@@ -189,6 +209,21 @@ static const struct cmdline table = {
 "Exit: 0 done, 1 ended by a fault or the limit, 64 wrong command line,\n"
 "65 job refused, 66 no such file, 73 cannot create, 78 machine file refused.\n",
 };
+
+static int check_setting(struct sim_options *o)
+{
+	struct interp_wire w = { .z_program_mm = -INFINITY,
+				 .z_second_mm = INFINITY };
+	struct interp_setting s = { 0 };
+	struct interp_diag d;
+
+	if (!cmdline_pairs(interp_set_name, o->set, o->setting,
+			   sizeof(o->setting)))
+		return refuse("what is set for the job", "is too long",
+			      "shorter numbers");
+	return interp_setting_read(o->setting, &s, &w, &d) == 0 ? -1 :
+	       refuse("set for the job:", d.found, d.wanted);
+}
 
 /* Checks that need more than one option. */
 static int check_together(const struct sim_options *o)
@@ -224,16 +259,20 @@ int edmsim_options_read(struct sim_options *o, int argc, char **argv)
 	struct cmdline_given given;
 	int code;
 
-	*o = (struct sim_options) { .offset_um = -1, .strategy = -1,
-				    .coupling = -1 };
+	*o = (struct sim_options) {
+		.offset_um = -1, .strategy = -1, .coupling = -1,
+	};
 	code = cmdline_take(&table, o, argc, argv, &given);
 	if (code >= 0)
 		return code;
 	if (cmdline_has(&table, &given, "from-line") && o->from_line == 0)
 		return refuse("--from-line", "0", "the number of a line of "
 			      "the file, 1 is the first");
+	code = check_setting(o);
+	if (code >= 0)
+		return code;
 	o->job = argv[given.first];
-	o->dry_run = o->dry_run || o->tune;
+	o->dry_run = o->dry_run || o->tune || o->check;
 	o->budget = floor(o->budget);
 	o->tolerance_given = cmdline_has(&table, &given, "tolerance");
 	o->fit_given = cmdline_has(&table, &given, "fit");

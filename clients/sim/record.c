@@ -67,6 +67,8 @@ static struct plot *begin_plot(const struct sim_run *r)
 		.program = "edmsim", .output = r->o->plot, .title = r->o->job,
 		.state_name = state_name, .servo_v = g->servo_v,
 		.short_v = g->short_v, .open_v = g->open_v,
+		.upper_by_places =
+			r->config->wire.guides == INTERP_GUIDES_ABSOLUTE,
 	});
 }
 

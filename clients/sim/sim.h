@@ -22,6 +22,8 @@ struct sim_options {
 	const char *dialect;		/* a name or a file; NULL: the job's */
 	const char *emit;		/* "3b" or "iso": write that, no run */
 	double unit_um, offset_um;	/* 0, -1: the machine file's */
+	const char *set[INTERP_NSETS];	/* NULL: the machine file's */
+	char setting[INTERP_SETTING_MAX];	/* all of them */
 	const char *tech;		/* table; NULL: the machine file's */
 	const char *pulses, *trace, *report, *plot;
 	uint64_t from_line;		/* 0: from_mm */

@@ -2,6 +2,8 @@
 /* compiling.c - a machine file as the options with which a job is compiled */
 #include "compiling.h"
 
+#include "interp/setting_text.h"
+
 #include <string.h>
 
 static struct interp_build_options build_of(const struct machine_config *c)
@@ -62,8 +64,9 @@ void config_compiling(const struct machine_config *c,
 	struct interp_diag none;
 
 	ret->build = build_of(c);
+	ret->wire = c->wire;
 	*o = (struct interp_compile_options) {
-		.nc = { .machine = &c->axes, .wire = &c->wire,
+		.nc = { .machine = &c->axes, .wire = &ret->wire,
 			.feed_mm_s = c->feed_default_mm_min / 60,
 			.escape = (enum interp_escape_mode)c->jump_escape,
 			.tip_tolerance_mm =
@@ -71,7 +74,8 @@ void config_compiling(const struct machine_config *c,
 			.tech = tech->table, .machine_tech = &ret->tech,
 			.mcode = ret->mcodes },
 		.threeb = { .unit_um = c->threeb_unit_um,
-			    .offset_um = c->fourb_offset_um },
+			    .offset_um = c->fourb_offset_um,
+			    .set = c->set },
 	};
 	config_tech_base(c, &ret->tech);
 	config_mcodes(c, ret->mcodes);
@@ -83,4 +87,15 @@ void config_compiling(const struct machine_config *c,
 		o->nc.delivery = &ret->delivery;
 	if (config_kinematics(c, &ret->kinematics, &none) == 0)
 		o->nc.kinematics = &ret->kinematics;
+}
+
+int config_compiling_set(struct config_compiling *of, const char *setting,
+			 struct interp_diag *diag)
+{
+	struct interp_compile_options *o = &of->text;
+	const int err = interp_setting_read(setting, &o->threeb.set, &of->wire,
+					    diag);
+
+	return err ? err : interp_setting_read(setting, &o->nc.set, &of->wire,
+					       diag);
 }

@@ -98,6 +98,7 @@ struct config_compiling {
 	struct interp_compile_options text;
 	struct interp_mcode mcodes[INTERP_NMCODES];
 	struct interp_tech tech;
+	struct interp_wire wire;
 	struct interp_kinematics kinematics;
 	struct interp_delivery delivery;
 };
@@ -111,5 +112,14 @@ struct config_compiling {
 void config_compiling(const struct machine_config *c,
 		      const struct config_tech *tech,
 		      struct config_compiling *ret);
+
+/**
+ * config_compiling_set() - what is set for this job goes before what is set in
+ * the machine file: interp/setting_text.h.
+ *
+ * Return: 0, or -EINVAL with @diag filled.
+ */
+int config_compiling_set(struct config_compiling *of, const char *setting,
+			 struct interp_diag *diag);
 
 #endif /* CONFIG_COMPILING_H */

@@ -31,7 +31,8 @@
 	ROW(GPIO, "gpio", io_gpio_open, 50000, MACHINE_SWITCHES, \
 	    config_gpio_has_gap, config_check_gpio, config_gpio_points_s) \
 	ROW(CAN402, "can402", io_can402_open, 2000000, \
-	    MACHINE_DRIVES | MACHINE_OWN_PLACE, \
+	    MACHINE_DRIVES | MACHINE_OWN_PLACE | MACHINE_HOMES | \
+	    MACHINE_SWITCHES, \
 	    backend_can402_has_gap, config_check_can402, NULL)
 
 #define CONFIG_BACKEND_ID(id, name, open, period_ns, is, has_gap, check, \
@@ -54,6 +55,7 @@ enum config_machine_is {
 	MACHINE_INDEX = 32,		/* index marks are read */
 	MACHINE_OWN_PLACE = 64,		/* a drive may tell a place of its
 					 * own: io_inputs.own */
+	MACHINE_HOMES = 128,		/* a drive finds its zero by itself */
 };
 
 struct machine_config;

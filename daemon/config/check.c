@@ -231,21 +231,6 @@ static int check_guides(struct check *q)
 	return 0;
 }
 
-/* The simulated generator counts discharges; a line is one of three, or there
- * is none. */
-static int check_lines(struct check *q)
-{
-	const int k = key_of(SECTION_GAP, "source");
-
-	if (q->c->gap.source != GAP_LINES ||
-	    !config_machine_is(q->c, MACHINE_MODEL))
-		return 0;
-	blame(q, k, key_of(SECTION_MACHINE, "backend"), 0);
-	return interp_diag_say(q->diag, "gap.source lines on backend sim, "
-			       "which has no comparators; source = sim or "
-			       "shares; or backend = gpio");
-}
-
 bool config_jump_fits(const struct machine_config *c, double mm, char *wanted,
 		      size_t size)
 {
@@ -278,7 +263,7 @@ int config_check(const struct machine_config *c,
 
 	if (backend->check && backend->check(c, lines, diag))
 		return -EINVAL;
-	return check_period(&q) || check_present(&q) || check_lines(&q) ||
+	return check_period(&q) || check_present(&q) ||
 	       check_guides(&q) || config_check_home(c, lines, diag) ||
 	       config_check_generator(c, lines, diag) ||
 	       config_check_plc(c, lines, diag) ||

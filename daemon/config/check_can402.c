@@ -112,6 +112,7 @@ static int check_lists(struct check *q, int axis)
 {
 	const struct config_drive *d = &q->c->drive[axis];
 	struct config_object object[CONFIG_SDO_MAX];
+	struct config_input input[CONFIG_NINPUTS];
 	uint16_t leave[CONFIG_LEAVE_MAX];
 	uint32_t identity[4];
 	uint8_t given;
@@ -120,6 +121,8 @@ static int check_lists(struct check *q, int axis)
 		return 0;
 	if (config_drive_sdo(d->sdo, object, q->diag) < 0)
 		return refuse_list(q, "drive_sdo", axis);
+	if (config_drive_inputs(d->inputs, input, q->diag) < 0)
+		return refuse_list(q, "drive_inputs", axis);
 	if (config_drive_leave(d->leave, leave, q->diag) < 0)
 		return refuse_list(q, "drive_leave", axis);
 	if (config_drive_identity(d->identity, identity, &given, q->diag) < 0)

@@ -68,6 +68,9 @@ static const char *misfit(const struct check *q, int field, bool told,
 		return "is told by a converter's output";
 	if (!told && w->input)
 		return "is an input register, which nobody can write";
+	if (w->within > 0 && (!told || field >= INTERP_NGENERATOR ||
+			      w->bits == 1))
+		return "has within, which is of a number that is told";
 	if (w->kind == WAY_REGISTER &&
 	    (field == PROCESS_SPARK || field == PROCESS_SENSE))
 		return "is a register, and those take a round trip: it must "
@@ -363,8 +366,8 @@ static int check_by_hand(struct check *q)
 	if (!*odd)
 		return check_two_hands(q, fields);
 	interp_diag_say(q->diag, "generator.by_hand has \"%s\"; of peak_a "
-			"on_us off_us polarity ignition_v iso sense pump, "
-			"those that a person sets", odd);
+			"on_us off_us polarity ignition_v iso servo_v sense "
+			"pump, those that a person sets", odd);
 	return refuse(q, "by_hand");
 }
 
@@ -396,6 +399,23 @@ static int check_guard(struct check *q, int line, const char *by,
 			"gpio.%s; gpio.%s_by = in your words, what does it",
 			key, key);
 	return refuse(q, "spark");
+}
+
+/* What the machine file itself gives, for a condition that does not. */
+static int check_servo(struct check *q)
+{
+	const double servo_v = q->c->gap.servo_v;
+	struct process_delivers d;
+	char range[120];
+
+	config_delivers(q->c, INTERP_TECH_SERVO_V, &d);
+	if (process_takes(&d, INTERP_TECH_SERVO_V, servo_v))
+		return 0;
+	process_range_text(&d, INTERP_TECH_SERVO_V, range, sizeof(range));
+	interp_diag_say(q->diag, "gap.servo_v %g V does not reach the "
+			"generator; %s; or another [generator] servo_v",
+			servo_v, range);
+	return refuse_at(q, SECTION_GAP, "servo_v");
 }
 
 /* -- Modbus and a PLC ------------------------------------------------------ */
@@ -513,13 +533,11 @@ static int check_by_plc(struct check *q)
 
 /* -- Counts for the gap servo ---------------------------------------------- */
 
-/* Between two tellings of a sum, at a pulse each microsecond. */
-#define PULSES_A_MS	1000
-
 /* Arcs may be left out: then they are in one of the others. */
 static int check_sum(struct check *q, int field)
 {
-	const double most = PULSES_A_MS * q->c->gap.share_stale_ms;
+	const double most = PROCESS_MOST_PULSES_S * 1e-3 *
+			    q->c->gap.share_stale_ms;
 	struct config_way w;
 	char key[24];
 
@@ -626,9 +644,10 @@ int config_check_generator(const struct machine_config *c,
 			return -EINVAL;
 	}
 	return check_modbus(&q) || check_by_plc(&q) || check_spark(&q) ||
-	       check_counts(&q) ||
+	       check_servo(&q) || check_counts(&q) ||
 	       check_guard(&q, LINE_WATCHDOG, c->gpio.watchdog_by,
 			   "watchdog") ||
-	       check_guard(&q, LINE_ESTOP, c->gpio.estop_by, "estop") ?
+	       check_guard(&q, LINE_ESTOP, c->gpio.estop_by, "estop") ||
+	       config_check_unused(c, lines, diag) ?
 	       -EINVAL : 0;
 }

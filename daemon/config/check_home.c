@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* check_home.c - whether the machine can find its places as it is told to */
+#include "drives.h"
 #include "keys.h"
 
 #include "cycle.h"
@@ -13,6 +14,7 @@ static const uint32_t needs[HOME_NMETHODS] = {
 	[HOME_SWITCH]		= MACHINE_SWITCHES,
 	[HOME_SWITCH_INDEX]	= MACHINE_SWITCHES | MACHINE_INDEX,
 	[HOME_ABSOLUTE]		= MACHINE_OWN_PLACE,
+	[HOME_DRIVE]		= MACHINE_HOMES,
 };
 
 struct check {
@@ -55,15 +57,36 @@ static int refuse_method(struct check *q, int axis)
 	return refuse(q, axis);
 }
 
-/* The line is one of [gpio]; a model has all switches. */
-static int check_line(struct check *q, int axis)
+/* An input of its drive, or a line of [gpio]; a model has all switches. */
+static bool has_switch(const struct machine_config *c, int axis)
 {
+	struct config_input input[CONFIG_NINPUTS];
 	struct config_line_at at;
+	struct interp_diag none;
 
-	config_line_read(q->c->gpio.line[LINE_HOME + axis], &at);
-	if (at.wired || q->c->manual[axis].method != HOME_SWITCH ||
-	    config_machine_is(q->c, MACHINE_NO_WIRES))
+	if (config_machine_is(c, MACHINE_NO_WIRES))
+		return true;
+	if (config_machine_is(c, MACHINE_DRIVES)) {
+		config_drive_inputs(c->drive[axis].inputs, input, &none);
+		return input[INPUT_HOME].wired;
+	}
+	config_line_read(c->gpio.line[LINE_HOME + axis], &at);
+	return at.wired;
+}
+
+static int check_switch(struct check *q, int axis)
+{
+	if (q->c->manual[axis].method != HOME_SWITCH ||
+	    has_switch(q->c, axis))
 		return 0;
+	if (config_machine_is(q->c, MACHINE_DRIVES)) {
+		interp_diag_say(q->diag, "axis.%c.home_method switch and no "
+				"home in its drive_inputs; drive_inputs = "
+				"home:2, with the bit of object 60FD, or "
+				"home_method = none",
+				INTERP_AXIS_LETTERS[axis]);
+		return refuse(q, axis);
+	}
 	interp_diag_say(q->diag, "axis.%c.home_method switch and gpio.home_%c "
 			"is none; gpio.home_%c = the number of a line, or "
 			"home_method = none", INTERP_AXIS_LETTERS[axis],
@@ -85,6 +108,20 @@ static int check_absolute(struct check *q, int axis)
 	return refuse(q, axis);
 }
 
+/* Its own method has a number. */
+static int check_drive(struct check *q, int axis)
+{
+	if (q->c->manual[axis].method != HOME_DRIVE ||
+	    q->c->drive[axis].home != 0)
+		return 0;
+	interp_diag_say(q->diag, "axis.%c.home_method drive and no drive_home; "
+			"drive_home = the number of its method, object 6098: "
+			"1 to 34, 35 or 37 where it stands, or the maker's "
+			"own; or home_method = none",
+			INTERP_AXIS_LETTERS[axis]);
+	return refuse(q, axis);
+}
+
 int config_check_home(const struct machine_config *c,
 		      const struct config_lines *lines,
 		      struct interp_diag *diag)
@@ -96,7 +133,8 @@ int config_check_home(const struct machine_config *c,
 			continue;
 		if (!can(c, (int)c->manual[i].method))
 			return refuse_method(&q, i);
-		if (check_line(&q, i) || check_absolute(&q, i))
+		if (check_switch(&q, i) || check_absolute(&q, i) ||
+		    check_drive(&q, i))
 			return -EINVAL;
 	}
 	return 0;

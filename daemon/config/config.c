@@ -118,6 +118,12 @@ static void generator_of(const struct machine_config *m,
 	g->off_us = or_own(g->off_us, sim ? m->sim.off_us : 0);
 }
 
+/* Seconds of the machine in a real one. */
+static double model_speed(const struct machine_config *c)
+{
+	return config_machine_is(c, MACHINE_MODEL) ? (double)c->sim.speed : 1;
+}
+
 static void asking_of(const struct machine_config *m, struct cycle_config *c)
 {
 	const struct config_generator *g = &m->generator;
@@ -127,6 +133,8 @@ static void asking_of(const struct machine_config *m, struct cycle_config *c)
 	a->answers = config_generator_interface(m) >= GENERATOR_MODBUS;
 	a->settle_cycles = cycles_of(g->settle_ms * 1e-3, c->period_ns);
 	a->polarity_cycles = cycles_of(g->polarity_ms * 1e-3, c->period_ns);
+	a->lease_cycles = cycles_of((g->confirm_s + VERB_TRY_S) *
+				    model_speed(m), c->period_ns);
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
 		struct config_way asked, told;
 
@@ -198,9 +206,7 @@ void config_cycle(const struct machine_config *c, struct cycle_config *ret)
 		.stop_at_nodes = c->nodes == 1,
 		.require_home = c->require_home,
 	};
-	ret->press_cycles = cycles_of(VERB_PRESS_S *
-				      (config_machine_is(c, MACHINE_MODEL) ?
-				       (double)c->sim.speed : 1),
+	ret->press_cycles = cycles_of(VERB_PRESS_S * model_speed(c),
 				      ret->period_ns);
 	ret->mcode_cycles = cycles_of(c->plc.m_timeout_s, ret->period_ns);
 	settings_of(c, ret);

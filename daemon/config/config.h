@@ -22,6 +22,7 @@
 #include "interp/errormap.h"
 #include "interp/mcode_arg.h"
 #include "interp/program.h"
+#include "interp/setting.h"
 #include "interp/wire.h"
 
 #include <stdbool.h>
@@ -101,6 +102,11 @@ enum config_brake {
 	BRAKE_UNSAID, BRAKE_FREE, BRAKE_DRIVE, BRAKE_NONE, BRAKE_LINE
 };
 
+enum config_drive_mode {
+	DRIVE_CSP,			/* 8, cyclic synchronous position */
+	DRIVE_IP,			/* 7, interpolated position */
+};
+
 struct config_drive {
 	double increments, pulses;	/* so many increments of the drive are
 					 * so many pulses */
@@ -109,7 +115,13 @@ struct config_drive {
 	int absolute, follow_bit;	/* 1: yes */
 	double fault_reaction, connection_lost;	/* 605E, 6007; -1: as it is */
 	double window_mm, quick_stop_mm_s2;	/* 6065, 6085; 0: as it is */
-	char identity[64], sdo[160], leave[64], eds[128];
+	int mode;			/* enum config_drive_mode */
+	double home;			/* 6098; 0: none */
+	double velocity_unit, acceleration_unit;	/* of 6099 and 609A, in
+							 * increments; 0: these
+							 * are as they are */
+	char identity[64], sdo[160], leave[64], eds[128],
+	     inputs[128];
 };
 
 /* [contour]: compensation of the contour error. */
@@ -324,6 +336,7 @@ struct machine_config {
 	double work_offset_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* [work] */
 
 	struct interp_wire wire;	/* [wire] */
+	struct interp_setting set;	/* record_ keys of it */
 	double offset_mm[INTERP_NOFFSETS];	/* [wire] offset_*_mm */
 
 	struct config_kinematics kinematics;
@@ -443,6 +456,8 @@ struct config_way {
 					 * many */
 	double scale;			/* of one count; 0: it is a code.  A
 					 * converter: of one V or mA */
+	double within;			/* told: so far from what was asked it
+					 * still is that */
 	/* Lines: the first is the lowest bit.  These and a register may have
 	 * codes: `code` i is the value of the code i. */
 	uint8_t nlines, ncodes;
@@ -543,7 +558,8 @@ const char *config_process_name(const struct machine_config *c);
 
 /** config_wire_height_mm() - of the work along the wire; 0: not known, or there
  *  is no wire. */
-double config_wire_height_mm(const struct machine_config *c);
+double config_wire_height_mm(const struct machine_config *c,
+			     const struct interp_wire *w);
 
 /** config_wire_lean_deg() - how far the wire leans from upright where the axes
  *  are at @pos_mm; 0 without guides. */

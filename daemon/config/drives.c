@@ -94,6 +94,57 @@ int config_drive_leave(const char *text, uint16_t *ret,
 	return n;
 }
 
+#define INPUT_BITS	32
+
+/* NAME:BIT or NAME:!BIT. Return: enum config_input_id, or -EINVAL. */
+static int input_read(const char *word, struct config_input *ret)
+{
+	static const char *const names[CONFIG_NINPUTS] = {
+		"limit_low", "limit_high", "home", "estop"
+	};
+	const size_t n = strcspn(word, ":");
+	const bool inverted = word[n] == ':' && word[n + 1] == '!';
+	const char *bit = word + n + 1 + inverted;
+	char *end;
+	unsigned long at;
+
+	if (word[n] != ':' || *bit < '0' || *bit > '9')
+		return -EINVAL;
+	at = strtoul(bit, &end, 10);
+	if (*end || at >= INPUT_BITS)
+		return -EINVAL;
+	*ret = (struct config_input) {
+		true, 1u << at, inverted ? 1u << at : 0
+	};
+	for (int i = 0; i < CONFIG_NINPUTS; i++)
+		if (strlen(names[i]) == n && strncmp(word, names[i], n) == 0)
+			return i;
+	return -EINVAL;
+}
+
+int config_drive_inputs(const char *text,
+			struct config_input ret[CONFIG_NINPUTS],
+			struct interp_diag *diag)
+{
+	char word[WORD_MAX];
+	int n = 0;
+
+	memset(ret, 0, CONFIG_NINPUTS * sizeof(*ret));
+	for (; next_word(&text, word); n++) {
+		struct config_input in;
+		const int i = input_read(word, &in);
+
+		if (i < 0)
+			return refuse(diag, word, "limit_low, limit_high, home "
+				      "or estop, each as home:2 or home:!2, "
+				      "with a bit of object 60FD, 0 to 31");
+		if (ret[i].wired)
+			return refuse(diag, word, "each input once");
+		ret[i] = in;
+	}
+	return n;
+}
+
 int config_drive_identity(const char *text, uint32_t ret[4],
 			  uint8_t *ret_given, struct interp_diag *diag)
 {

@@ -2,7 +2,7 @@
 /*
  * drives.h - the keys of a CiA 402 drive that are lists in a line of text
  *
- * Return, all three: how many there are, or -EINVAL with @diag's found and
+ * Return, all of them: how many there are, or -EINVAL with @diag's found and
  * wanted filled; "none" is none.  Threads: startup only.
  */
 #ifndef CONFIG_DRIVES_H
@@ -26,6 +26,26 @@ int config_drive_sdo(const char *text, struct config_object *ret,
 /** config_drive_leave() - "1006 60c2". */
 int config_drive_leave(const char *text, uint16_t *ret,
 		       struct interp_diag *diag);
+
+enum config_input_id {
+	INPUT_LIMIT_LOW, INPUT_LIMIT_HIGH, INPUT_HOME, INPUT_ESTOP,
+	CONFIG_NINPUTS
+};
+
+/* A bit of a drive's digital inputs, object 60FD. */
+struct config_input {
+	bool wired;
+	uint32_t mask;			/* the bit */
+	uint32_t idle;			/* ... and what it is while off */
+};
+
+/**
+ * config_drive_inputs() - "limit_low:0 limit_high:1 home:2 estop:!16"; with "!"
+ * an input is on when its bit is 0.
+ */
+int config_drive_inputs(const char *text,
+			struct config_input ret[CONFIG_NINPUTS],
+			struct interp_diag *diag);
 
 /**
  * config_drive_identity() - "fb 64100000 x x": words of 1018:1 ... 4; of

@@ -69,7 +69,8 @@ static void by_itself(const struct machine_config *c, int field,
 	char odd[CONFIG_WAY_WORD];
 
 	*ret = (struct config_way) { .kind = WAY_NONE };
-	if (config_hand_read(c->generator.by_hand, odd) >> field & 1)
+	if (config_hand_read(c->generator.by_hand, odd) >> field & 1 ||
+	    process_is_setting(field))
 		return;
 	if (interface == GENERATOR_CAN && !config_generator_gpio(c, field))
 		usual_frame(c, field, ret);
@@ -168,6 +169,7 @@ void config_delivers(const struct machine_config *c, int field,
 	*ret = w.gives;
 	if (config_hand_read(c->generator.by_hand, odd) >> field & 1)
 		config_way_all(field, true, ret);
+	ret->stays = w.kind == WAY_REGISTER;
 	only_told(c, field, &w, ret);
 }
 
@@ -233,11 +235,8 @@ int config_generator_takes(const struct machine_config *c,
 
 		if (isnan(t->v[i]) || !config_generator_limits(c))
 			continue;
-		/* A generator that nobody turns round is positive. */
-		if (i == INTERP_TECH_POLARITY && t->v[i] > 0)
-			continue;
 		config_delivers(c, i, &d);
-		if (isnan(process_nearest(&d, i, t->v[i])))
+		if (!process_takes(&d, i, t->v[i]))
 			return refuse_value(&d, i, t->v[i], who, diag);
 	}
 	return 0;

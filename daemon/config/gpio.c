@@ -355,9 +355,9 @@ static int refuse_unused(struct check *q, const struct config_key *k)
 {
 	blame(q, k, 0);
 	return interp_diag_say(q->diag, "gpio.%s with backend can402; of "
-			       "[gpio] it has chip, brake_X ... brake_V and "
-			       "brake_ms",
-			       k->name);
+			       "[gpio] it has chip, brake_X ... brake_V, "
+			       "brake_ms and, with [generator] spark = line "
+			       "..., watchdog_by and estop_by", k->name);
 }
 
 static int check_unused(struct check *q)

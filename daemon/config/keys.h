@@ -194,6 +194,12 @@ int config_check_generator(const struct machine_config *c,
 			   const struct config_lines *lines,
 			   struct interp_diag *diag);
 
+/** config_check_unused() - the same for keys of [generator] that its interface
+ *  does not have. */
+int config_check_unused(const struct machine_config *c,
+			const struct config_lines *lines,
+			struct interp_diag *diag);
+
 /**
  * config_way_read() - the text of a way that is not "auto".
  * Return: NULL, or what is wrong with it, as "has no byte".

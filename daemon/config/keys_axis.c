@@ -13,6 +13,7 @@ static const char *method_word(int i)
 		[HOME_SWITCH] = "switch",
 		[HOME_SWITCH_INDEX] = "switch-index",
 		[HOME_ABSOLUTE] = "absolute",
+		[HOME_DRIVE] = "drive",
 	};
 
 	return WORD_OF(words, i);
@@ -26,6 +27,11 @@ static const char *direction_word(int i)
 static const char *yes_word(int i)
 {
 	return i == 0 ? "no" : i == 1 ? "yes" : NULL;
+}
+
+static const char *mode_word(int i)
+{
+	return i == DRIVE_CSP ? "csp" : i == DRIVE_IP ? "ip" : NULL;
 }
 
 static const char *brake_word(int i)
@@ -78,7 +84,7 @@ static const struct config_key row[] = {
 	       "homing"),
 	NUMBER(AXIS, "home_at_mm", "mm", "0", -1e6, 1e6, MANUAL(home_at_mm),
 	       "place of the switch or of the index mark; with home_method "
-	       "absolute, the place where the drive says 0"),
+	       "absolute or drive, the place where the drive says 0"),
 	NUMBER(AXIS, "home_back_mm", "mm", "1", 1e-3, 1e4, MANUAL(home_back_mm),
 	       "distance that the axis leaves the switch by, before it "
 	       "goes onto it slowly"),
@@ -136,6 +142,21 @@ static const struct config_key row[] = {
 	       DRIVE(quick_stop_mm_s2),
 	       "object 6085, the drive's ramp in a quick stop; 0: left as "
 	       "it is"),
+	WORDS(AXIS, "drive_mode", "csp", DRIVE(mode), mode_word,
+	      "mode of the drive: cyclic synchronous position (8), or "
+	      "interpolated position (7) if it has no other"),
+	WHOLE(AXIS, "drive_home", "", "0", -128, 127, DRIVE(home),
+	      "object 6098, how the drive homes by itself, with home_method "
+	       "drive: 1 to 34 as in CiA 402, 35 or 37 where it stands, "
+	       "negative: the maker's own"),
+	NUMBER(AXIS, "drive_velocity_unit", "increments/s", "1", 0, 1e9,
+	       DRIVE(velocity_unit),
+	       "so many are 1 in object 6099, which gets home_fast_mm_s and "
+	       "home_slow_mm_s; 0: left as the drive has it"),
+	NUMBER(AXIS, "drive_acceleration_unit", "increments/s2", "1", 0, 1e12,
+	       DRIVE(acceleration_unit),
+	       "so many are 1 in object 609A, which gets a_max_mm_s2; 0: left "
+	       "as the drive has it"),
 	DRIVE_TEXT("drive_identity", identity,
 		   "object 1018, hexadecimal, vendor product revision serial; "
 		   "x: any"),
@@ -145,6 +166,10 @@ static const struct config_key row[] = {
 	DRIVE_TEXT("drive_leave", leave,
 		   "objects, in hexadecimal, that edmd leaves as the drive has "
 	       "them"),
+	DRIVE_TEXT("drive_inputs", inputs,
+		   "what is wired to inputs of the drive, object 60FD: "
+	       "limit_low:BIT limit_high:BIT home:BIT estop:BIT; !BIT: on when "
+	       "the bit is 0"),
 	DRIVE_TEXT("drive_eds", eds,
 		   "file of the drive's EDS; what edmd writes is checked "
 	       "against it"),

@@ -55,6 +55,9 @@ static const struct config_key row[] = {
 	    "the same for the off time, as lines 5 6 codes 2 4 8 16"),
 	WAY("ignition_v", INTERP_TECH_IGNITION_V,
 	    "the same for the open-circuit voltage"),
+	WAY("servo_v", INTERP_TECH_SERVO_V,
+	    "the same for the reference of a gap servo of the generator's "
+	    "own; auto: not at all"),
 	WAY("polarity", INTERP_TECH_POLARITY,
 	    "a line, or a bit, that is on while the electrode is to be "
 	    "negative"),
@@ -66,7 +69,7 @@ static const struct config_key row[] = {
 	WAY("spark", PROCESS_SPARK, "on while sparks are allowed"),
 	TOLD("peak_a", PEAK_A), TOLD("on_us", ON_US), TOLD("off_us", OFF_US),
 	TOLD("ignition_v", IGNITION_V), TOLD("polarity", POLARITY),
-	TOLD("iso", ISO),
+	TOLD("iso", ISO), TOLD("servo_v", SERVO_V),
 	SUM("opens", OPENS, "where it counts pulses that did not ignite"),
 	SUM("sparks", SPARKS, "where it counts those that ignited well"),
 	SUM("arcs", ARCS, "where it counts arcs"),

@@ -91,6 +91,21 @@ static const struct config_key row[] = {
 	WORDS(WIRE, "gouge", "refuse", AT(wire.gouge), gouge_word,
 	      "a part of a contour that is too narrow for the wire: the "
 	       "job is refused, or the part is skipped"),
+	NUMBER(WIRE, "record_offset_mm", "mm", "0", -50, 50, AT(set.wire_mm),
+	       "how far to the left of the contour of a 3B program the wire "
+	       "runs; below 0: to the right"),
+	NUMBER(WIRE, "record_taper_deg", "deg", "0", -80, 80,
+	       AT(set.taper_deg),
+	       "how far its top leans to the left along the contour of a 3B "
+	       "or 4B program; below 0: to the right"),
+	NUMBER(WIRE, "record_scale", "", "1", 0.001, 1000, AT(set.scale),
+	       "by which a 3B or 4B program is larger"),
+	NUMBER(WIRE, "record_turn_deg", "deg", "0", -360, 360,
+	       AT(set.turn_deg),
+	       "by which it is turned about its start, from X toward Y"),
+	WORDS(WIRE, "record_mirror", "none", AT(set.mirror),
+	      interp_mirror_name,
+	      "which axis of it is mirrored before it is turned"),
 	REGISTER(0), REGISTER(1), REGISTER(2), REGISTER(3), REGISTER(4),
 	REGISTER(5), REGISTER(6), REGISTER(7), REGISTER(8), REGISTER(9),
 

@@ -204,6 +204,8 @@ static bool read_pair(const char *key, double v, struct place *at,
 		ret->bits = 32;
 	else if (strcmp(key, "scale") == 0 && v > 0)
 		ret->scale = v;
+	else if (strcmp(key, "within") == 0 && v > 0)
+		ret->within = v;
 	else
 		return false;
 	return true;
@@ -272,7 +274,7 @@ static const char *read_can(struct words *w, int field, struct config_way *ret)
 	};
 	if (!read_place(w, &at, ret) || *w->word)
 		return "has a word that is none of byte 0 to 7, bit 0 to 7, "
-		       "bits 1 to 32, scale above 0";
+		       "bits 1 to 32, scale, within of what is told";
 	if (at.byte < 0)
 		return "has no byte";
 	ret->bit = (uint8_t)(8 * at.byte + at.bit);
@@ -297,9 +299,8 @@ static const char *read_register(struct words *w, int field,
 		.bits = is_switch(field) ? 1 : NATURAL_BITS,
 	};
 	if (!read_place(w, &at, ret))
-		return "has a word that is none of bit 0 to 15, bits 1 to 16, "
-		       "scale above 0, codes; of a sum also bits 32, first "
-		       "high or low";
+		return "has a word that is none of bit 0 to 15, bits 1 to 16 or "
+		       "32, first, scale, codes, within of what is told";
 	if (ret->low_first && ret->bits != 32)
 		return "has an order, and one register";
 	ret->bit = (uint8_t)at.bit;
@@ -324,7 +325,8 @@ static const char *read_register(struct words *w, int field,
 /* The scale of its signal; 1: it is a bit, or a number; 0: a PLC has none. */
 static double plc_scale(int field)
 {
-#define SCALE(S, id, i, name, unit, scale, help) [INTERP_TECH_##id] = scale,
+#define SCALE(S, id, i, tpdo, rpdo, byte, name, unit, scale, help) \
+	[INTERP_TECH_##id] = scale,
 	static const double scale[PROCESS_NTOLD] = {
 		PLC_PULSE_ROWS(SCALE, 0)
 		[INTERP_TECH_POLARITY] = 1, [INTERP_TECH_ISO] = 1,

@@ -4,10 +4,9 @@
 
 #include <math.h>
 
-double config_wire_height_mm(const struct machine_config *c)
+double config_wire_height_mm(const struct machine_config *c,
+			     const struct interp_wire *w)
 {
-	const struct interp_wire *w = &c->wire;
-
 	if (c->gap.process != PROCESS_WIRE)
 		return 0;
 	return w->guides != INTERP_GUIDES_OFF ?

@@ -89,6 +89,46 @@ static void unload_finish(struct loop *l)
 	loop_answer(l, id, (int32_t)answer);
 }
 
+/* What a drive is told must not meet a job, nor motion.  A machine with a fault
+ * stands, and may need it. */
+static bool may_set(const struct loop *l)
+{
+	return !l->program && !l->opening && loop_stands(l);
+}
+
+static enum cycle_answer object_ask(struct loop *l, const struct shm_command *c)
+{
+	struct cia402_request r = {
+		.axis = (uint8_t)(c->arg >> 24),
+		.index = (uint16_t)(c->arg >> 8), .sub = (uint8_t)c->arg,
+		.sets = c->verb == SHM_OBJECT_SET,
+	};
+
+	if (!l->io.object || !(c->arg_mm >= 0 && c->arg_mm <= UINT32_MAX))
+		return ANSWER_BAD_ARGUMENT;
+	r.value = (uint32_t)c->arg_mm;
+	if ((r.sets && !may_set(l)) || l->asking ||
+	    !l->io.object(l->io.self, &r))
+		return ANSWER_WRONG_STATE;
+	l->asking = c->id;
+	return ANSWER_DONE;
+}
+
+void loop_drives(struct loop *l)
+{
+	struct cia402_told told;
+	const uint64_t id = l->asking;
+
+	if (!l->io.drives)
+		return;
+	l->io.drives(l->io.self, &told);
+	shm_drives_put(l->status, &told);
+	if (id == 0 || told.answer.end == CIA402_UNDER_WAY)
+		return;
+	l->asking = 0;
+	loop_answer(l, id, (int32_t)ANSWER_DONE);
+}
+
 /* Such a motion is answered when it begins: rt/moved.h. */
 static bool verb_moves(uint32_t verb)
 {
@@ -176,7 +216,8 @@ static void end_again(struct loop *l, const struct shm_command *c)
 
 static void carry_out(struct loop *l, const struct shm_command *c)
 {
-	bool later = c->verb == SHM_LOAD || c->verb == SHM_UNLOAD;
+	bool later = c->verb == SHM_LOAD || c->verb == SHM_UNLOAD ||
+		     c->verb == SHM_OBJECT_GET || c->verb == SHM_OBJECT_SET;
 	enum cycle_answer answer = ANSWER_WRONG_STATE;
 
 	/* A command without an id cannot be answered. */
@@ -200,6 +241,8 @@ static void carry_out(struct loop *l, const struct shm_command *c)
 		answer = unload_ask(l, c);
 	else if (c->verb == SHM_AHEAD)
 		answer = ahead_ask(l, c);
+	else if (later)
+		answer = object_ask(l, c);
 	else
 		answer = pass_on(l, c);
 

@@ -110,6 +110,7 @@ static void period(struct loop *l, const struct setup_wake *w)
 	loop_plc_read(l);
 	steps(l, w->woke_ns);
 	loop_plc_write(l);
+	loop_drives(l);
 
 	count_took(l, clock_ns(CLOCK_MONOTONIC) - w->woke_ns);
 	loop_snapshot(l, &s);

@@ -61,6 +61,7 @@ struct loop {
 	bool opening;			/* a program was asked for */
 	bool ahead;			/* ... that is to be loaded later */
 	uint64_t unloading;		/* command that waits for a stop */
+	uint64_t asking;		/* command that waits for a drive */
 	uint64_t moved_by;		/* command whose motion began last */
 	bool ending;			/* no more commands: shutting down */
 	pthread_t thread;
@@ -86,6 +87,10 @@ void loop_commands(struct loop *l);
 
 /** loop_replies() - take the programs that the main thread has opened. */
 void loop_replies(struct loop *l);
+
+/** loop_drives() - once per real period: publish what is known of the drives,
+ *  and answer who asked for an object. */
+void loop_drives(struct loop *l);
 
 /**
  * loop_notice() - send events for everything that has changed since the last

@@ -8,6 +8,7 @@
 #include "loop.h"
 
 #include "axes/axis_state.h"
+#include "path/mcode.h"
 #include "path/place.h"
 #include "path/probe_rest.h"
 
@@ -44,7 +45,8 @@ SAME(SHM_NO_NODE, ANSWER_NO_NODE);
 SAME(SHM_NOT_PASSED, ANSWER_NOT_PASSED);
 SAME(SHM_ELSEWHERE, ANSWER_ELSEWHERE);
 SAME(SHM_NOT_UP, ANSWER_NOT_UP);
-SAME(SHM_LOCKED, ANSWER_LOCKED);
+SAME(SHM_PLC_HOLDS, ANSWER_PLC_HOLDS);
+SAME(SHM_SEEN, ANSWER_SEEN);
 SAME(SHM_STILL_THERE, ANSWER_STILL_THERE);
 SAME(SHM_NO_POWER, ANSWER_NO_POWER);
 SAME(SHM_ASKS, ANSWER_ASKS);
@@ -70,7 +72,7 @@ static struct shm_event event_of(const struct loop *l, uint32_t kind)
 		.time_ns = l->time_ns,
 		.kind = kind,
 		.program = l->program ? l->program->n : 0,
-		.line = l->program ? l->cycle.cursor.seg.line : 0,
+		.line = l->program ? mcode_line(&l->cycle) : 0,
 		.place_mm = told_place_mm(l),
 	};
 }
@@ -232,7 +234,7 @@ static void snapshot_place(const struct cycle *c, struct shm_snapshot *s)
 
 	s->seg = at->index;
 	s->tick = at->tick;
-	s->line = at->seg.line;
+	s->line = mcode_line(c);
 	s->place_mm = interp_cursor_place_mm(at);
 	s->far_mm = c->far_mm;
 	s->length_mm = at->p.head->length_mm;

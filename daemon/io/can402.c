@@ -171,7 +171,10 @@ static void drain(struct can402 *s)
 static bool all_up(const struct can402 *s)
 {
 	for (uint32_t i = 0; i < s->n; i++) {
-		if (s->drive[i].phase != DRIVE_RUNNING || !s->drive[i].stands)
+		const struct drive *d = &s->drive[i];
+
+		if (d->phase != DRIVE_RUNNING || !d->stands ||
+		    (d->c.reads_inputs && !d->has_inputs))
 			return false;
 	}
 	return true;
@@ -181,8 +184,10 @@ static bool all_up(const struct can402 *s)
 static bool all_join(struct can402 *s)
 {
 	for (uint32_t i = 0; i < s->n; i++) {
-		if (s->drive[i].state != DRIVE_ENABLED || !s->drive[i].led ||
-		    s->drive[i].goal != DRIVE_GO_ON)
+		const struct drive *d = &s->drive[i];
+
+		if (!drive_is_homing(d) && (d->state != DRIVE_ENABLED ||
+		    !d->led || d->goal != DRIVE_GO_ON))
 			return false;
 	}
 	if (can402_brake_opens(s))
@@ -285,6 +290,27 @@ static void beat(struct can402 *s)
 	send(s, &m);
 }
 
+/* An axis's switches and its e-stop may be wired to its drive. */
+static void fill_inputs(const struct can402 *s, uint32_t i,
+			struct io_inputs *in)
+{
+	const struct drive *d = &s->drive[i];
+	const uint32_t bit = 1u << s->axis[i];
+	bool on[CONFIG_NINPUTS];
+
+	for (int j = 0; j < CONFIG_NINPUTS; j++) {
+		const struct config_input *c = &s->input[i][j];
+
+		on[j] = d->has_inputs && c->wired &&
+			(d->inputs & c->mask) != c->idle;
+	}
+	in->limit_low |= on[INPUT_LIMIT_LOW] * bit;
+	in->limit_high |= on[INPUT_LIMIT_HIGH] * bit;
+	in->limit = in->limit_low | in->limit_high;
+	in->home |= on[INPUT_HOME] * bit;
+	in->estop = in->estop || on[INPUT_ESTOP];
+}
+
 static void fill(struct can402 *s, struct io_inputs *in, uint32_t unplaced)
 {
 	*in = (struct io_inputs) {
@@ -303,10 +329,19 @@ static void fill(struct can402 *s, struct io_inputs *in, uint32_t unplaced)
 	memcpy(in->stands_at, s->out.target, sizeof(in->stands_at));
 	for (uint32_t i = 0; i < s->n; i++) {
 		const struct drive *d = &s->drive[i];
+		const uint32_t bit = 1u << s->axis[i];
 
+		fill_inputs(s, i, in);
+		/* While it homes its count says nothing of its place. */
+		if (drive_is_homing(d)) {
+			in->homing |= bit;
+			continue;
+		}
 		in->actual[s->axis[i]] = drive_place(d);
 		in->own[s->axis[i]] = drive_own_place(d);
 		in->ran_on[s->axis[i]] = s->stop[i].coast;
+		in->homed |= (d->homed_now == DRIVE_HOMED) * bit;
+		in->unfound |= (d->homed_now == DRIVE_UNFOUND) * bit;
 		if (d->stands && s->placed && !d->lost)
 			in->stands_at[s->axis[i]] = drive_stands_at(d);
 	}
@@ -353,6 +388,8 @@ static void tell_drive(struct can402 *s, uint32_t i, enum drive_goal goal)
 	struct can_msg m[DRIVE_EMITS];
 	size_t n;
 
+	drive_home_ask(&s->drive[i], s->out.enable &&
+		       s->out.home >> s->axis[i] & 1);
 	drive_aim(&s->drive[i], goal);
 	n = drive_emit(&s->drive[i], target, m);
 	for (size_t j = 0; j < n; j++)

@@ -25,6 +25,7 @@
 struct can402_bus {
 	uint32_t bitrate;		/* bit/s */
 	uint32_t axes;
+	uint32_t inputs;		/* so many of them send theirs */
 	uint32_t heartbeat_ms;
 	bool gap;			/* its frames are on it too */
 	uint32_t generator;		/* frames to it and from it */

@@ -14,7 +14,7 @@
 
 static bool holds(const struct drive *d)
 {
-	return d->led && d->state == DRIVE_ENABLED &&
+	return (d->led || drive_is_homing(d)) && d->state == DRIVE_ENABLED &&
 	       d->trouble == DRIVE_WELL;
 }
 

@@ -12,6 +12,7 @@
 #include "can402.h"
 #include "can_socket.h"
 #include "config.h"
+#include "drives.h"
 
 #include <stdatomic.h>
 
@@ -30,6 +31,7 @@ enum can402_note_kind {
 struct can402_note {
 	enum can402_note_kind kind;
 	uint8_t node, axis, passed;
+	uint8_t maker[5];		/* of an emergency */
 	uint32_t number, more, value;
 };
 
@@ -60,6 +62,7 @@ struct can402 {
 	struct drive drive[IO_NAXES];
 	uint8_t axis[IO_NAXES];
 	struct config_can402 c;
+	struct config_input input[IO_NAXES][CONFIG_NINPUTS];
 	int64_t period_ns;
 	uint32_t beat_every, beat_in;
 	enum can_got bus;		/* CAN_NOTHING: well */
@@ -86,6 +89,8 @@ struct can402 {
 	bool has_shares;
 	uint32_t gap_age;
 	struct can402_told told[IO_NAXES];
+	uint32_t asked;			/* the drive whose object was asked for
+					 * last */
 	uint32_t malformed, foreign, lost;	/* all so far */
 	uint16_t foreign_id;		/* of another master's last frame */
 	uint32_t states[NOTE_END - NOTE_BUS_WARNING];	/* of the controller */
@@ -121,6 +126,12 @@ void can402_write(void *self, const struct io_outputs *out);
 void can402_close(void *self);
 bool can402_origin(void *self, int32_t ret[IO_NAXES]);
 void can402_originate(void *self, const int32_t zero[IO_NAXES]);
+
+/* -- can402_told.c -------------------------------------------------------- */
+
+/* Of struct io_machine. */
+void can402_drives(void *self, struct cia402_told *ret);
+bool can402_object(void *self, const struct cia402_request *r);
 
 /* -- can402_stop.c -------------------------------------------------------- */
 

@@ -10,6 +10,7 @@
 
 #define RPDO_BYTES	6		/* controlword, position */
 #define TPDO_BYTES	7		/* statusword, position, mode */
+#define INPUT_BYTES	4		/* digital inputs */
 #define FRAME_BYTES	8		/* gap, generator, a PLC's frames */
 #define PLC_SET		4		/* frames of edmd, one in a period */
 #define PLC_BEAT_MS	100		/* edmd's to the PLC, and the PLC's */
@@ -28,7 +29,8 @@ static double plc_bits(const struct can402_bus *b, double period_us)
 double can402_load(const struct can402_bus *b, double period_us)
 {
 	const uint32_t pdos = b->axes * (can_bits(RPDO_BYTES) +
-					 can_bits(TPDO_BYTES));
+					 can_bits(TPDO_BYTES)) +
+			      b->inputs * can_bits(INPUT_BYTES);
 	const uint32_t others = (b->gap + b->generator) *
 				can_bits(FRAME_BYTES);
 	const double beats = (b->axes + 1) * can_bits(1) * period_us /

@@ -5,6 +5,7 @@
 #include "can402_bus.h"
 
 #include <stdio.h>
+#include <string.h>
 
 void can402_tell(struct can402 *s, const struct can402_note *n)
 {
@@ -47,14 +48,14 @@ static void say_drive(const struct can402_note *n, char *buf, size_t size)
 	switch (n->kind) {
 	case NOTE_TROUBLE:
 		snprintf(buf, size, "drive %c (node %u) %s", axis, n->node,
-			 drive_trouble_name((enum drive_trouble)n->number));
+			 cia402_trouble_name(n->number));
 		break;
 	case NOTE_ABORT:
 		if (n->number != 0)
 			snprintf(buf, size, "drive %c (node %u) refuses object "
 				 "%04x:%02x, value %x, code %08x: %s", axis,
 				 n->node, index, sub, n->value, n->number,
-				 drive_abort_text(n->number));
+				 cia402_abort_text(n->number));
 		else
 			snprintf(buf, size, "drive %c (node %u): object "
 				 "%04x:%02x is %x, which does not go with the "
@@ -65,12 +66,16 @@ static void say_drive(const struct can402_note *n, char *buf, size_t size)
 		snprintf(buf, size, "drive %c (node %u): object %04x:%02x, "
 			 "value %x, code %08x: %s; %s", axis, n->node, index,
 			 sub, n->value, n->number,
-			 n->number ? drive_abort_text(n->number) : "not ours",
+			 n->number ? cia402_abort_text(n->number) : "not ours",
 			 passed[n->passed]);
 		break;
 	case NOTE_EMERGENCY:
 		snprintf(buf, size, "drive %c (node %u): emergency %04x, its "
-			 "%u.", axis, n->node, n->number, n->more);
+			 "%u.: %s; register %02x, the maker's field %02x %02x "
+			 "%02x %02x %02x", axis, n->node, n->number, n->more,
+			 cia402_emergency_text((uint16_t)n->number), n->value,
+			 n->maker[0], n->maker[1], n->maker[2], n->maker[3],
+			 n->maker[4]);
 		break;
 	case NOTE_SILENT:
 		snprintf(buf, size, "drive %c (node %u) does not answer; is it "
@@ -213,6 +218,19 @@ static void tell_up(struct can402 *s, uint32_t i)
 		tell_of(s, i, (struct can402_note) { .kind = NOTE_UNMAPPED });
 }
 
+static void tell_emergency(struct can402 *s, uint32_t i)
+{
+	const struct drive *d = &s->drive[i];
+	const struct cia402_emergency *e =
+		&d->history[(d->came - 1) % CIA402_EMERGENCIES];
+	struct can402_note n = { .kind = NOTE_EMERGENCY, .number = e->code,
+				 .more = d->emergencies,
+				 .value = e->error_register };
+
+	memcpy(n.maker, e->maker, sizeof(n.maker));
+	tell_of(s, i, n);
+}
+
 /* These may come in a flood, so only a few of them are told. */
 static void tell_counts(struct can402 *s, uint32_t i,
 			const struct can402_told *was)
@@ -220,9 +238,7 @@ static void tell_counts(struct can402 *s, uint32_t i,
 	const struct drive *d = &s->drive[i];
 
 	if (d->emergencies != was->emergencies && is_round(d->emergencies))
-		tell_of(s, i, (struct can402_note) { .kind = NOTE_EMERGENCY,
-					      .number = d->emergency,
-					      .more = d->emergencies });
+		tell_emergency(s, i);
 	if (d->unanswered != was->unanswered && is_round(d->unanswered))
 		tell_of(s, i, (struct can402_note) { .kind = NOTE_SILENT });
 	if (d->warnings != was->warnings && is_round(d->warnings))

@@ -46,6 +46,15 @@ static bool has_plc(const struct machine_config *c)
 	       strcmp(c->plc.interface, c->can402.interface) == 0;
 }
 
+static bool reads_inputs(const struct machine_config *c, int axis)
+{
+	struct config_input input[CONFIG_NINPUTS];
+	struct interp_diag none;
+
+	return c->can402.node[axis] > 0 &&
+	       config_drive_inputs(c->drive[axis].inputs, input, &none) > 0;
+}
+
 static int check_load(const struct machine_config *c, struct interp_diag *diag)
 {
 	struct can402_bus b = {
@@ -59,8 +68,10 @@ static int check_load(const struct machine_config *c, struct interp_diag *diag)
 
 	if (has_plc(c))
 		b.plc_us = c->plc.cycle_ms * 1e3;
-	for (int i = 0; i < IO_NAXES; i++)
+	for (int i = 0; i < IO_NAXES; i++) {
 		b.axes += c->can402.node[i] > 0;
+		b.inputs += reads_inputs(c, i);
+	}
 	load = can402_load(&b, us);
 	if (load <= CAN402_LOAD_MAX)
 		return 0;
@@ -117,6 +128,48 @@ static void add_writes(struct drive_config *d, const struct config_drive *c,
 			own[i].bytes, own[i].value, false });
 }
 
+#define HERE_OLD	35		/* homing methods: where it stands */
+#define HERE		37
+
+/*
+ * What it does when it homes by itself.  Without an offset its count is 0 where
+ * its zero is: drives do not agree on the sign of one.
+ */
+static void add_homing(struct drive_config *d, const struct machine_config *c,
+		       int axis, double increments_mm)
+{
+	const struct config_drive *k = &c->drive[axis];
+	const struct manual_axis *a = &c->manual[axis];
+	const double v = increments_mm / k->velocity_unit;
+
+	want(d, (struct drive_write) { 0x6098, 0, 1,
+		(uint8_t)(int8_t)k->home, false });
+	want(d, (struct drive_write) { 0x607c, 0, 4, 0, true });
+	if (k->velocity_unit > 0) {
+		want(d, (struct drive_write) { 0x6099, 1, 4,
+			whole(a->home_fast_mm_s * v), false });
+		want(d, (struct drive_write) { 0x6099, 2, 4,
+			whole(a->home_slow_mm_s * v), false });
+	}
+	if (k->acceleration_unit > 0)
+		want(d, (struct drive_write) { 0x609a, 0, 4,
+			whole(c->axes.axis[axis].a_max_mm_s2 * increments_mm /
+			      k->acceleration_unit), true });
+}
+
+/* The whole travel and what is searched beyond it, there and back, fast and
+ * slowly. */
+static double home_ms(const struct machine_config *c, int axis)
+{
+	const struct interp_axis_limits *l = &c->axes.axis[axis];
+	const struct manual_axis *a = &c->manual[axis];
+	const double mm = l->travel_max_mm - l->travel_min_mm +
+			  2 * a->home_search_mm;
+
+	return 1e3 * fmin(1e6, mm / a->home_fast_mm_s +
+			       mm / a->home_slow_mm_s);
+}
+
 static uint32_t cycles_of(double ms, double period_us)
 {
 	return (uint32_t)(ms * 1e3 / period_us);
@@ -147,11 +200,19 @@ static struct drive_config drive_of(const struct machine_config *c, int axis)
 		.limited_cycles = (uint32_t)(LIMITED_US / period_us),
 		.absolute = d->absolute, .held = is_held(d),
 		.no_follow_bit = !d->follow_bit,
+		.interpolates = d->mode == DRIVE_IP,
+		.reads_inputs = reads_inputs(c, axis),
+		.homes = c->manual[axis].method == HOME_DRIVE,
+		.homes_here = (int)d->home == HERE || (int)d->home == HERE_OLD,
+		.home_cycles = cycles_of(home_ms(c, axis), period_us),
+		.enable_cycles = cycles_of(1e3 * k->enable_s, period_us),
 	};
 
 	config_drive_identity(d->identity, ret.identity, &ret.identified,
 			      &none);
 	ret.nleaves = (uint32_t)config_drive_leave(d->leave, ret.leave, &none);
+	if (ret.homes)
+		add_homing(&ret, c, axis, increments_mm);
 	add_writes(&ret, d, increments_mm);
 	return ret;
 }
@@ -184,6 +245,8 @@ static int check_eds(const struct machine_config *c, struct interp_diag *diag)
 
 static void add_drives(struct can402 *s, const struct machine_config *c)
 {
+	struct interp_diag none;
+
 	for (int i = 0; i < IO_NAXES; i++) {
 		struct drive_config d;
 
@@ -193,26 +256,28 @@ static void add_drives(struct can402 *s, const struct machine_config *c)
 		s->axis[s->n] = (uint8_t)i;
 		if (c->drive[i].brake == BRAKE_LINE)
 			s->braked |= 1u << i;
+		config_drive_inputs(c->drive[i].inputs, s->input[s->n], &none);
 		s->stop[s->n].a = brakes_by(c, i, &d);
 		drive_init(&s->drive[s->n++], &d);
 	}
 }
 
-/* Four kinds of frames of each drive, NMT, targets of others, and the gap. */
+/* Five kinds of frames of each drive, NMT, targets of others, and the gap. */
 static int open_bus(const struct config_can402 *k)
 {
 	static const uint16_t kinds[] = {
-		CAN_TPDO1, CAN_EMCY, CAN_HEARTBEAT, CAN_SDO_ANSWER
+		CAN_TPDO1, CAN_TPDO2, CAN_EMCY, CAN_HEARTBEAT, CAN_SDO_ANSWER
 	};
-	struct can_hear hear[4 + 3] = {
+	struct can_hear hear[3 + sizeof(kinds) / sizeof(kinds[0])] = {
 		{ CAN_NMT, 0x7ff }, { CAN_RPDO1, 0x780 },
 		{ k->gap_id > 0 ? (uint16_t)k->gap_id : CAN_NMT, 0x7ff },
 	};
 
 	/* Filtered by function code only; drive_receive() looks at the node. */
-	for (size_t i = 0; i < 4; i++)
+	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++)
 		hear[3 + i] = (struct can_hear) { kinds[i], 0x780 };
-	return can_socket_open(k->interface, hear, 7);
+	return can_socket_open(k->interface, hear,
+			       sizeof(hear) / sizeof(hear[0]));
 }
 
 int can402_attach(struct io_machine *m, const struct machine_config *c, int fd)
@@ -237,6 +302,7 @@ int can402_attach(struct io_machine *m, const struct machine_config *c, int fd)
 		.write = can402_write, .close = can402_close,
 		.note = can402_note, .origin = can402_origin,
 		.originate = can402_originate,
+		.drives = can402_drives, .object = can402_object,
 	};
 	return 0;
 }

@@ -32,7 +32,8 @@ static double measure(struct can402 *s)
 		struct can402_stop *t = &s->stop[i];
 		const struct drive *d = &s->drive[i];
 
-		t->speed = d->joined ? speed_of(d, t) : 0;
+		t->speed = d->joined && !drive_is_homing(d) ?
+			   speed_of(d, t) : 0;
 		t->at = d->target;
 		most = fmax(most, fabs(t->speed) / t->a);
 	}

@@ -25,6 +25,7 @@ enum can_id {
 	CAN_EMCY	= 0x080,	/* + node, 1 ... 127 */
 	CAN_TPDO1	= 0x180,
 	CAN_RPDO1	= 0x200,
+	CAN_TPDO2	= 0x280,
 	CAN_RPDO2	= 0x300,
 	CAN_RPDO3	= 0x400,
 	CAN_SDO_ANSWER	= 0x580,

@@ -11,14 +11,16 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define FAULT_RESET	0x80
 #define RESET_MS	1000		/* so long bit 7 goes up and down, */
 #define EDGE_MS		20		/* ... and stays for so long */
-#define MODE_CSP	8
-#define FOLLOWS		0x1000u		/* bits of the statusword in mode 8 */
-#define FOLLOWING_ERROR	0x2000u
+#define FOLLOWS		0x1000u		/* bits of the statusword in mode 8, */
+#define FOLLOWING_ERROR	0x2000u		/* ... not of mode 7 */
 #define AT_LIMIT	0x0800u
+#define ENABLED		0x0fu		/* controlword */
+#define INTERPOLATE	0x10u
 #define VOLTAGE		0x0010u
 #define POWER_MS	200		/* a drive is ready to switch on after
 					 * so long, if it can be */
@@ -180,9 +182,21 @@ static void hear_state(struct drive *d, const struct can_msg *m)
 		d->resetting = 0;
 }
 
+static void hear_inputs(struct drive *d, const struct can_msg *m)
+{
+	d->inputs = can_get(m->data, 4);
+	d->told_inputs = d->has_inputs = true;
+}
+
 static void hear_emergency(struct drive *d, const struct can_msg *m)
 {
+	struct cia402_emergency *e = &d->history[d->came++ %
+						 CIA402_EMERGENCIES];
+
 	d->emergency = (uint16_t)can_get(m->data, 2);
+	*e = (struct cia402_emergency) { .code = d->emergency,
+		.error_register = m->data[2], .at = d->periods };
+	memcpy(e->maker, m->data + 3, sizeof(e->maker));
 	if (d->emergency == 0) {
 		d->alarmed = 0;
 		return;
@@ -210,6 +224,11 @@ static uint8_t length_of(const struct drive *d, uint16_t id, uint8_t len)
 	return id == CAN_TPDO1 && d->shows_mode ? (uint8_t)(len + 1) : len;
 }
 
+static bool is_pdo(uint16_t id)
+{
+	return id == CAN_TPDO1 || id == CAN_TPDO2;
+}
+
 bool drive_receive(struct drive *d, const struct can_msg *m)
 {
 	static const struct {
@@ -218,6 +237,7 @@ bool drive_receive(struct drive *d, const struct can_msg *m)
 		void (*hear)(struct drive *, const struct can_msg *);
 	} kinds[] = {
 		{ CAN_TPDO1, 6, hear_state },
+		{ CAN_TPDO2, 4, hear_inputs },
 		{ CAN_EMCY, 8, hear_emergency },
 		{ CAN_HEARTBEAT, 1, hear_heartbeat },
 		{ CAN_SDO_ANSWER, 8, drive_setup_receive },
@@ -228,8 +248,7 @@ bool drive_receive(struct drive *d, const struct can_msg *m)
 			continue;
 		if (m->len != length_of(d, kinds[i].id, kinds[i].len))
 			d->malformed++;
-		else if (m->id != CAN_TPDO1 + d->c.node ||
-			 d->phase == DRIVE_RUNNING)
+		else if (!is_pdo(kinds[i].id) || d->phase == DRIVE_RUNNING)
 			kinds[i].hear(d, m);
 		return true;
 	}
@@ -292,10 +311,14 @@ static bool is_clipped(const struct drive *d)
 	return left * gone <= 0 || 2 * llabs(gone) < asked;
 }
 
+bool drive_is_in_mode(const struct drive *d)
+{
+	return !d->shows_mode || d->mode == drive_mode(&d->c);
+}
+
 bool drive_follows(const struct drive *d)
 {
-	return d->state == DRIVE_ENABLED &&
-	       (!d->shows_mode || d->mode == MODE_CSP) &&
+	return d->state == DRIVE_ENABLED && drive_is_in_mode(d) &&
 	       (d->c.no_follow_bit || d->status & FOLLOWS);
 }
 
@@ -305,18 +328,18 @@ static void watch_bits(struct drive *d)
 	if (drive_follows(d))
 		d->led = true;
 	else if (d->led || d->enabled_for > d->c.answer_cycles)
-		trouble(d, d->shows_mode && d->mode != MODE_CSP ?
-			   DRIVE_OTHER_MODE : DRIVE_NOT_LED);
+		trouble(d, drive_is_in_mode(d) ? DRIVE_NOT_LED :
+						 DRIVE_OTHER_MODE);
 	if (!d->led)
 		return;
-	if (d->status & FOLLOWING_ERROR)
+	if (d->status & FOLLOWING_ERROR && !d->c.interpolates)
 		trouble(d, DRIVE_FOLLOWING);
 	d->limited_for = is_clipped(d) ? d->limited_for + 1 : 0;
 	if (d->limited_for > d->c.limited_cycles)
 		trouble(d, DRIVE_LIMITED);
 }
 
-static uint32_t cycles_of(const struct drive *d, uint32_t ms)
+uint32_t drive_cycles(const struct drive *d, uint32_t ms)
 {
 	const uint32_t n = ms * 1000 / d->c.period_us;
 
@@ -325,7 +348,7 @@ static uint32_t cycles_of(const struct drive *d, uint32_t ms)
 
 bool drive_lacks_power(const struct drive *d)
 {
-	return d->lacking > cycles_of(d, POWER_MS);
+	return d->lacking > drive_cycles(d, POWER_MS);
 }
 
 /* A drive that is to have power and could be switched on is watched: if it
@@ -351,6 +374,8 @@ static void watch_power(struct drive *d)
 static void watch_state(struct drive *d)
 {
 	watch_power(d);
+	if (drive_home_step(d))
+		return;
 	if (d->state == DRIVE_ENABLED) {
 		d->enabled_for++;
 		if (d->goal == DRIVE_GO_ON)
@@ -397,22 +422,26 @@ static void watch_answers(struct drive *d)
 
 void drive_sync(struct drive *d)
 {
+	d->periods++;
 	if (d->phase != DRIVE_RUNNING)
 		return;
 	watch_answers(d);
 	if (++d->silent > d->c.beat_cycles)
 		trouble(d, DRIVE_MUTE);
 	watch_alarm(d);
-	if (d->answered) {
+	if (d->answered && (d->told_inputs || !d->c.reads_inputs)) {
 		d->missing = 0;
 		watch_state(d);
-		watch_following(d);
+		if (!drive_is_homing(d))
+			watch_following(d);
 	} else if (++d->missing > (d->heard ? d->c.missing_max :
 				   d->c.answer_cycles)) {
 		/* Its state stays as last heard, so it is sent a quick stop. */
 		trouble(d, d->strange ? DRIVE_STRANGE : DRIVE_NO_ANSWER);
 	}
-	d->answered = false;
+	if (d->trouble != DRIVE_WELL)
+		drive_home_drop(d);
+	d->answered = d->told_inputs = false;
 	d->was = d->actual;
 	for (int i = DRIVE_SENT - 1; i > 0; i--)
 		d->sent[i] = d->sent[i - 1];
@@ -424,8 +453,7 @@ void drive_sync(struct drive *d)
 /* Wait for mode 8 before enabling; some drives show it only when enabled. */
 static bool waits_for_mode(struct drive *d)
 {
-	if (d->state != DRIVE_SWITCHED_ON || !d->shows_mode ||
-	    d->mode == MODE_CSP) {
+	if (d->state != DRIVE_SWITCHED_ON || drive_is_in_mode(d)) {
 		d->mode_waited = 0;
 		return false;
 	}
@@ -440,15 +468,26 @@ static uint16_t fault_word(struct drive *d)
 {
 	if (d->resetting == 0)
 		return 0;
-	return d->edge_for++ / cycles_of(d, EDGE_MS) % 2 ? 0 : FAULT_RESET;
+	return d->edge_for++ / drive_cycles(d, EDGE_MS) % 2 ? 0 : FAULT_RESET;
 }
 
-static uint16_t control_word(struct drive *d)
+/* In mode 7 bit 4 says that targets are to be followed.  In another mode it
+ * would begin something else. */
+static uint16_t with_interpolation(const struct drive *d, uint16_t word)
+{
+	return d->c.interpolates && d->state == DRIVE_ENABLED &&
+	       word == ENABLED && drive_is_in_mode(d) ?
+	       word | INTERPOLATE : word;
+}
+
+static uint16_t state_word(struct drive *d)
 {
 	const bool on = d->goal == DRIVE_GO_ON && d->trouble == DRIVE_WELL;
 
 	if (d->state == DRIVE_FAULT)
 		return fault_word(d);
+	if (on && drive_is_homing(d))
+		return drive_home_control(d);
 	if (on && waits_for_mode(d))
 		return drive_control(DRIVE_GO_ON, DRIVE_READY);
 	/* An axis without a brake would fall if it lost torque in between. */
@@ -468,6 +507,10 @@ static void aim_at(struct drive *d, int32_t target)
 	const bool follows = d->led && d->state == DRIVE_ENABLED &&
 			     d->homed && !d->lost;
 
+	if (drive_is_homing(d)) {
+		d->target = d->actual;
+		return;
+	}
 	d->joined = d->joined && follows && d->goal == DRIVE_GO_ON;
 	/* One that is slow to obey a stop still goes to its last target. */
 	if (!follows)
@@ -476,8 +519,14 @@ static void aim_at(struct drive *d, int32_t target)
 		d->target = drive_wanted(d, target);
 }
 
+static uint16_t control_word(struct drive *d)
+{
+	return with_interpolation(d, state_word(d));
+}
+
 size_t drive_emit(struct drive *d, int32_t target, struct can_msg *ret)
 {
+	d->told_pulses = target;
 	if (d->phase != DRIVE_RUNNING)
 		return drive_setup_emit(d, ret);
 	if (!d->heard)
@@ -515,11 +564,13 @@ void drive_reset(struct drive *d)
 	d->silent = 0;
 	d->resetting = anew || d->state == DRIVE_FAULT ||
 		       d->state == DRIVE_FAULT_REACTION ?
-		       cycles_of(d, RESET_MS) : 0;
+		       drive_cycles(d, RESET_MS) : 0;
 	d->edge_for = 0;
 	d->busy = 0;
 	d->strange = false;
 	d->led = false;
+	d->mode_wanted = drive_mode(&d->c);
+	drive_home_drop(d);
 	if (!anew) {
 		d->remode = d->phase == DRIVE_RUNNING && !surely_follows(d);
 		return;

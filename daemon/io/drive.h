@@ -6,7 +6,8 @@
  * While the drive is in NMT state pre-operational, it is set up by SDO, with
  * one request at a time and at most one step per period: its identity;
  * heartbeats in both directions; one RPDO (6040 and 607A) and one TPDO (6041,
- * 6064 and 6061), both with every SYNC; the values that the machine file asks
+ * 6064 and 6061), both with every SYNC, and another TPDO for digital inputs
+ * (60FD) if these are asked for; the values that the machine file asks
  * for; mode 8; the interpolation time. Then it is started, and led by its
  * statusword through the state machine of CiA 402.
  *
@@ -27,23 +28,10 @@
 #define IO_DRIVE_H
 
 #include "can_msg.h"
+#include "cia402.h"
 
 #include <stdbool.h>
 #include <stddef.h>
-
-/* States of CiA 402, by the statusword. */
-enum drive_state {
-	DRIVE_NOT_READY,		/* to switch on; or not heard yet */
-	DRIVE_DISABLED,			/* switch on disabled */
-	DRIVE_READY,			/* to switch on */
-	DRIVE_SWITCHED_ON,
-	DRIVE_ENABLED,			/* operation enabled */
-	DRIVE_QUICK_STOP,
-	DRIVE_FAULT_REACTION,
-	DRIVE_FAULT,
-	DRIVE_NSTATES,
-	DRIVE_NO_STATE = DRIVE_NSTATES	/* a statusword that is no state */
-};
 
 /* Where the master wants it. */
 enum drive_goal {
@@ -51,37 +39,6 @@ enum drive_goal {
 	DRIVE_GO_STOP,			/* quick stop, then off */
 	DRIVE_GO_ON,
 	DRIVE_NGOALS
-};
-
-/* How far it is brought up. */
-enum drive_phase {
-	DRIVE_SILENT,			/* asked, not answered yet */
-	DRIVE_CONFIGURED_NEXT,		/* SDO steps under way */
-	DRIVE_RUNNING,			/* NMT operational: PDOs flow */
-	DRIVE_REFUSED,			/* an SDO was aborted: see note */
-};
-
-/* What is wrong with it; the first one stays until drive_reset(). */
-enum drive_trouble {
-	DRIVE_WELL,
-	DRIVE_EMERGENCY,		/* it is in the state fault, or sent an
-					 * EMCY and does not answer */
-	DRIVE_FELL_OFF,			/* it left operation enabled by
-					 * itself */
-	DRIVE_FOLLOWING,		/* too far from its target */
-	DRIVE_MUTE,			/* no heartbeat */
-	DRIVE_NO_ANSWER,		/* no TPDO for too many SYNCs */
-	DRIVE_STRANGE,			/* its statusword is no state */
-	DRIVE_REBOOTED,			/* its settings are gone */
-	DRIVE_MISCONFIGURED,		/* an SDO refused */
-	DRIVE_OTHER_MODE,		/* left mode 8, or never came to it */
-	DRIVE_NOT_LED,			/* bit 12: it ignores its target */
-	DRIVE_LIMITED,			/* bit 11: its target is clipped */
-	DRIVE_NOT_STARTED,		/* NMT: not operational any more */
-	DRIVE_POWERLESS,		/* it does not take power, or lost it */
-	DRIVE_TWICE,			/* more answers than SYNCs: whose are
-					 * they? */
-	DRIVE_NTROUBLES
 };
 
 /* A number the machine file wants in a drive. */
@@ -92,7 +49,7 @@ struct drive_write {
 	bool may_miss;			/* a drive may not have the object */
 };
 
-#define DRIVE_WRITES	24
+#define DRIVE_WRITES	32
 #define DRIVE_LEAVES	8
 
 struct drive_config {
@@ -109,10 +66,18 @@ struct drive_config {
 	double lag_cycles;		/* it may lag by what it moves in this
 					 * many cycles */
 	uint32_t limited_cycles;	/* bit 11 may be set for this long */
+	bool interpolates;		/* mode 7, its target is 60C1:1; else
+					 * mode 8 and 607A */
+	bool homes;			/* it homes by itself when told, ... */
+	bool homes_here;		/* ... where it stands, and so without
+					 * motion */
+	uint32_t home_cycles;		/* longest time for that, ... */
+	uint32_t enable_cycles;		/* ... and to change its mode */
 	bool absolute;			/* it keeps its place without power */
 	bool held;			/* it has no brake and keeps its torque
 					 * in quick stop too */
 	bool no_follow_bit;		/* it does not have bit 12 */
+	bool reads_inputs;		/* its digital inputs, 60FD, in TPDO2 */
 	uint32_t identity[4];		/* 1018:1 ... 4, where ... */
 	uint8_t identified;		/* ... this has bit 0 ... 3 */
 	struct drive_write write[DRIVE_WRITES];
@@ -135,6 +100,13 @@ enum drive_passed {
 	DRIVE_ALREADY,			/* the object has that value already */
 	DRIVE_ANOTHER,			/* another value is tried */
 	DRIVE_LATER,			/* the same request is sent again */
+};
+
+/* What came of homing by itself. */
+enum drive_homed {
+	DRIVE_NOT_HOMED,
+	DRIVE_HOMED,
+	DRIVE_UNFOUND,
 };
 
 struct drive {
@@ -178,7 +150,8 @@ struct drive {
 	uint32_t sized;			/* in this step the object has ... */
 	uint8_t bytes;			/* ... so many; 0: as usual */
 	bool reading_back;
-	bool remode;			/* write 6060 once more */
+	bool remode;			/* write 6060 once more: this */
+	uint8_t mode_wanted;
 	uint32_t waited;		/* cycles since the last request */
 	bool quiet, asked;		/* told to send no PDOs; a request is
 					 * not answered yet */
@@ -195,7 +168,10 @@ struct drive {
 					 * power */
 	bool shows_voltage;		/* bit 4 tells of its supply */
 	uint32_t warnings;		/* times a bit of DRIVE_WARNS came */
-	bool answered;			/* a TPDO came since the last SYNC */
+	bool answered;			/* a TPDO1 came since the last SYNC */
+	uint32_t inputs;		/* 60FD, as last heard in TPDO2 */
+	bool told_inputs;		/* ... since the last SYNC */
+	bool has_inputs;		/* ... at all, since it was set up */
 	bool strange;			/* the last statusword was no state */
 	uint32_t answers;		/* so many did */
 	int32_t surplus;		/* TPDOs more than SYNCs */
@@ -203,6 +179,23 @@ struct drive {
 	uint32_t resetting;		/* cycles it may still report a fault */
 	uint32_t malformed;		/* frames of a wrong length, and answers
 					 * to nothing asked, in all */
+	uint64_t periods;		/* so far */
+	uint32_t came;			/* emergencies, in all; the last: */
+	struct cia402_emergency history[CIA402_EMERGENCIES];
+	/* drive_object.c: what somebody asks for */
+	struct cia402_answer object;
+	/* drive_home.c: homing by itself */
+	uint32_t home_step;		/* enum drive_home_step */
+	uint32_t home_for, ready_for;	/* cycles in this step; ready */
+	uint32_t still_for;		/* ... and without motion, at: */
+	int32_t still_at;
+	bool home_asked;
+	uint16_t home_fresh;		/* bits 12 and 13 that were 0 since it
+					 * began */
+	enum drive_homed homed_now;
+	int32_t told_pulses;		/* target that the cycle gave last */
+	uint32_t object_step;		/* enum object_step; 0: nothing */
+	int32_t object_from;		/* its place when it began */
 };
 
 /** drive_init() - nothing is known about the drive yet, and its goal is off. */
@@ -277,9 +270,14 @@ bool drive_has_place(enum drive_state s);
 int32_t drive_wanted(const struct drive *d, int32_t target);
 
 /**
- * drive_follows() - does it show mode 8, and report that it follows its target?
+ * drive_follows() - does it show its mode, and report that it follows its
+ * target?
  */
 bool drive_follows(const struct drive *d);
+
+/** drive_is_in_mode() - does it show the mode in which it follows targets, or
+ *  none? */
+bool drive_is_in_mode(const struct drive *d);
 
 /**
  * drive_lacks_power() - is it without power, so that it cannot be enabled: by
@@ -294,12 +292,11 @@ bool drive_lacks_power(const struct drive *d);
 /** drive_control() - the controlword that leads from state @s toward @goal. */
 uint16_t drive_control(enum drive_goal goal, enum drive_state s);
 
-/** drive_state_name(), drive_trouble_name() - for logs. Any thread. */
-const char *drive_state_name(enum drive_state s);
-const char *drive_trouble_name(enum drive_trouble t);
-
-/** drive_abort_text() - an abort code of CiA 301 in words. Any thread. */
-const char *drive_abort_text(uint32_t code);
+/** drive_mode() - the mode in which it follows targets. */
+static inline uint8_t drive_mode(const struct drive_config *c)
+{
+	return c->interpolates ? 7 : 8;
+}
 
 /* -- drive_setup.c: the SDO steps ----------------------------------------- */
 
@@ -308,6 +305,14 @@ size_t drive_setup_emit(struct drive *d, struct can_msg *ret);
 
 /** drive_setup_remode() - the request for mode 8, while the drive runs. */
 size_t drive_setup_remode(struct drive *d, struct can_msg *ret);
+
+/** drive_download(), drive_upload() - the request that writes or reads. */
+struct can_msg drive_download(const struct drive *d,
+			      const struct drive_write *w);
+struct can_msg drive_upload(const struct drive *d, const struct drive_write *w);
+
+/** drive_sdo_bytes() - how many bytes were read. */
+uint8_t drive_sdo_bytes(const struct can_msg *m);
 
 /** drive_setup_again() - begin again with the first step. */
 void drive_setup_again(struct drive *d);
@@ -322,5 +327,53 @@ size_t drive_setup_end(const struct drive *d, struct can_msg *ret);
 
 /** drive_setup_receive() - take an answer by SDO. */
 void drive_setup_receive(struct drive *d, const struct can_msg *m);
+
+/* -- drive_home.c: homing by itself, in mode 6 ----------------------------- */
+
+/**
+ * drive_home_ask() - home, or stop doing so; to be called in each period.
+ *
+ * A drive that does not show its mode cannot.  One whose axis stays where it is
+ * without torque changes its mode without torque, one that would fall changes
+ * it under torque.  When it is back in its mode and follows, its zero is set so
+ * that it stands where it was sent last, and homed_now tells what came of it,
+ * until it is not asked any more.
+ */
+void drive_home_ask(struct drive *d, bool asked);
+
+/** drive_home_step() - once a period. Return: is it under way? */
+bool drive_home_step(struct drive *d);
+
+/** drive_is_homing() - it is not led by targets. */
+bool drive_is_homing(const struct drive *d);
+
+/** drive_home_control() - the controlword for that. */
+uint16_t drive_home_control(const struct drive *d);
+
+/** drive_home_drop() - it is over, and nothing was found. */
+void drive_home_drop(struct drive *d);
+
+/** drive_cycles() - so many ms as cycles, 1 at least. */
+uint32_t drive_cycles(const struct drive *d, uint32_t ms);
+
+/* -- drive_object.c: an object that somebody asks for, or sets ------------- */
+
+/**
+ * drive_object_ask() - begin with @r; its end is that of d->object.
+ *
+ * Objects that edmd writes itself, and all of a drive that has torque, are not
+ * set.  Before an object is set it is read, and once more afterwards.  If that
+ * has changed the count of the drive, its place is lost.
+ */
+void drive_object_ask(struct drive *d, const struct cia402_request *r);
+
+/** drive_object_emit() - the request that is due, unless the set-up runs. */
+size_t drive_object_emit(struct drive *d, struct can_msg *ret);
+
+/** drive_object_receive() - take an answer. Return: false: it is not for us. */
+bool drive_object_receive(struct drive *d, const struct can_msg *m);
+
+/** drive_object_drop() - the drive is set up anew: what is asked is over. */
+void drive_object_drop(struct drive *d);
 
 #endif /* IO_DRIVE_H */

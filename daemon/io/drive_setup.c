@@ -12,6 +12,7 @@
  */
 #include "drive.h"
 #include "drive_steps.h"
+#include "drive_sdo.h"
 
 #define SETUP_TRIES	3
 #define BUSY_TRIES	10		/* of what a busy drive aborts */
@@ -19,14 +20,9 @@
 #define NMT_START	0x01
 #define NMT_QUIET	0x80		/* pre-operational */
 
-#define SDO_UPLOAD	0x40
-#define SDO_EXPEDITED	0x42
-#define SDO_STORED	0x60
-#define SDO_ABORT	0x80
-
 /* An expedited transfer that says its size. */
-static struct can_msg download(const struct drive *d,
-			       const struct drive_write *w)
+struct can_msg drive_download(const struct drive *d,
+			      const struct drive_write *w)
 {
 	struct can_msg m = { .id = (uint16_t)(CAN_SDO_ASK + d->c.node),
 			     .len = 8 };
@@ -38,7 +34,7 @@ static struct can_msg download(const struct drive *d,
 	return m;
 }
 
-static struct can_msg upload(const struct drive *d, const struct drive_write *w)
+struct can_msg drive_upload(const struct drive *d, const struct drive_write *w)
 {
 	struct can_msg m = { .id = (uint16_t)(CAN_SDO_ASK + d->c.node),
 			     .len = 8, .data = { SDO_UPLOAD } };
@@ -62,6 +58,7 @@ void drive_setup_again(struct drive *d)
 	d->bytes = 0;
 	d->unset = false;
 	d->shows_mode = false;
+	drive_object_drop(d);
 }
 
 /* Time 0: not watched.  Our node stays there, unless the drive loses power. */
@@ -73,7 +70,7 @@ size_t drive_setup_end(const struct drive *d, struct can_msg *ret)
 
 	if (d->phase == DRIVE_SILENT)
 		return 0;
-	ret[0] = download(d, &beat);
+	ret[0] = drive_download(d, &beat);
 	ret[1] = nmt(d, NMT_QUIET);
 	return DRIVE_ENDS;
 }
@@ -86,7 +83,7 @@ static size_t start(struct drive *d, struct can_msg *ret)
 	d->missing = 0;
 	d->alarmed = 0;
 	d->lacking = 0;
-	d->heard = d->stands = false;
+	d->heard = d->stands = d->has_inputs = false;
 	*ret = nmt(d, NMT_START);
 	return 1;
 }
@@ -96,8 +93,8 @@ static size_t ask(struct drive *d, const struct drive_step *s,
 {
 	d->asked = true;
 	d->waited = 0;
-	*ret = s->reads || d->reading_back ? upload(d, &s->write) :
-					     download(d, &s->write);
+	*ret = s->reads || d->reading_back ? drive_upload(d, &s->write) :
+					     drive_download(d, &s->write);
 	return 1;
 }
 
@@ -106,7 +103,7 @@ size_t drive_setup_emit(struct drive *d, struct can_msg *ret)
 	struct drive_step s;
 
 	if (d->phase == DRIVE_REFUSED)
-		return 0;
+		return drive_object_emit(d, ret);
 	if (!d->quiet) {
 		d->quiet = true;
 		*ret = nmt(d, NMT_QUIET);
@@ -128,13 +125,22 @@ size_t drive_setup_emit(struct drive *d, struct can_msg *ret)
 	return ask(d, &s, ret);
 }
 
+static struct drive_write mode_of(const struct drive *d)
+{
+	return (struct drive_write) { 0x6060, 0, 1, d->mode_wanted, false };
+}
+
 size_t drive_setup_remode(struct drive *d, struct can_msg *ret)
 {
-	if (!d->remode || (d->asked && d->waited++ < d->c.answer_cycles))
+	const struct drive_write mode = mode_of(d);
+
+	if (d->object_step || !d->remode)
+		return drive_object_emit(d, ret);
+	if (d->asked && d->waited++ < d->c.answer_cycles)
 		return 0;
 	d->asked = true;
 	d->waited = 0;
-	*ret = download(d, &drive_mode_csp);
+	*ret = drive_download(d, &mode);
 	return 1;
 }
 
@@ -165,8 +171,7 @@ static bool is_answer(const struct drive *d, const struct drive_write *w,
 	       m->data[3] == w->sub;
 }
 
-/* How many bytes were read. */
-static uint8_t size_of(const struct can_msg *m)
+uint8_t drive_sdo_bytes(const struct can_msg *m)
 {
 	return m->data[0] & 1 ? (uint8_t)(4 - (m->data[0] >> 2 & 3)) : 4;
 }
@@ -237,13 +242,13 @@ static uint32_t mask_of(const struct drive_step *s)
 static void on_old_word(struct drive *d, const struct drive_step *s,
 			const struct can_msg *m)
 {
-	const uint32_t off = can_get(m->data + 4, size_of(m)) ^ s->write.value;
+	const uint8_t bytes = drive_sdo_bytes(m);
+	const uint32_t off = can_get(m->data + 4, bytes) ^ s->write.value;
 	const bool same = (off & mask_of(s)) == 0;
-	const bool sized = is_length(d->refused) &&
-			   size_of(m) != s->write.bytes;
+	const bool sized = is_length(d->refused) && bytes != s->write.bytes;
 
 	d->reading_back = false;
-	d->bytes = sized ? size_of(m) : 0;
+	d->bytes = sized ? bytes : 0;
 	d->sized = d->step;
 	note_abort(d, &s->write, d->refused, sized ? DRIVE_ANOTHER :
 		   same ? DRIVE_ALREADY : DRIVE_NOT_PASSED);
@@ -256,7 +261,7 @@ static void on_old_word(struct drive *d, const struct drive_step *s,
 static void on_word(struct drive *d, const struct drive_step *s,
 		    const struct can_msg *m)
 {
-	d->word = can_get(m->data + 4, size_of(m)) & mask_of(s);
+	d->word = can_get(m->data + 4, drive_sdo_bytes(m)) & mask_of(s);
 	if (drive_step_finds_restart(d, s)) {
 		drive_setup_again(d);
 		return;
@@ -274,7 +279,9 @@ static void on_word(struct drive *d, const struct drive_step *s,
 
 static void hear_remode(struct drive *d, const struct can_msg *m)
 {
-	if (!is_answer(d, &drive_mode_csp, m) ||
+	const struct drive_write mode = mode_of(d);
+
+	if (!is_answer(d, &mode, m) ||
 	    (m->data[0] != SDO_STORED && m->data[0] != SDO_ABORT)) {
 		d->malformed++;
 		return;
@@ -282,7 +289,7 @@ static void hear_remode(struct drive *d, const struct can_msg *m)
 	d->asked = d->remode = false;
 	if (m->data[0] != SDO_ABORT)
 		return;
-	note_abort(d, &drive_mode_csp, can_get(m->data + 4, 4),
+	note_abort(d, &mode, can_get(m->data + 4, 4),
 		   DRIVE_NOT_PASSED);
 	if (d->trouble == DRIVE_WELL)
 		d->trouble = DRIVE_OTHER_MODE;
@@ -293,6 +300,8 @@ void drive_setup_receive(struct drive *d, const struct can_msg *m)
 	struct drive_step s;
 	bool reads;
 
+	if (drive_object_receive(d, m))
+		return;
 	if (d->phase == DRIVE_RUNNING) {
 		hear_remode(d, m);
 		return;

@@ -9,15 +9,13 @@
 #define PDO_ID		0x1fffffffu
 #define SYNC_PRODUCES	0x40000000u
 #define EVERY_SYNC	1
-#define MODE_CSP	8
 #define PROFILE_402	0x0192u
-#define CSP_BIT		0x80u		/* of the supported modes */
-
-const struct drive_write drive_mode_csp = { 0x6060, 0, 1, MODE_CSP, false };
+#define MODE_BIT(mode)	(1u << ((mode) - 1))	/* of the supported modes */
+#define MODE_HOMING	6
 
 enum what {
 	/* Reads. */
-	IS_402, HAS_CSP, IDENTITY,
+	IS_402, HAS_MODES, IDENTITY,
 	WAS_ON,				/* is our node still in it? */
 	COB_READ,			/* of a PDO, for the next steps */
 	SYNC_READ, COUNTER_READ,
@@ -32,11 +30,15 @@ enum what {
 	COB_OFF,			/* the same identifier, disabled */
 	COB_RPDO, COB_TPDO,		/* another identifier, if need be */
 	COB_RPDO_ON, COB_TPDO_ON,
+	INPUTS,				/* its digital inputs, ... */
+	COB_INPUTS, COB_INPUTS_ON,	/* ... in TPDO2 */
 	MODE_MAPPED,			/* it can send 6061 */
 	TPDO_COUNT,
 	SYNC_ID,			/* if it is not 080 */
 	CYCLE_OFF, COUNTER_OFF,		/* if it expects counted SYNCs */
 	CYCLE_US,
+	TARGET,				/* the object that it follows */
+	MODE, SUB_MODE,			/* sub-mode: one point at a time */
 	FILE_WRITES,			/* those of the machine file */
 	TIME_INDEX, TIME_VALUE,		/* interpolation: value * 10^index s */
 };
@@ -56,7 +58,7 @@ struct row {
 /* clang-format off */
 static const struct row rows[] = {
 	{ 0x1000, 0, 4, IS_402,      0,          false },
-	{ 0x6502, 0, 4, HAS_CSP,     0,          true },
+	{ 0x6502, 0, 4, HAS_MODES,   0,          true },
 	{ 0x1018, 1, 4, IDENTITY,    0,          false },
 	{ 0x1018, 2, 4, IDENTITY,    1,          false },
 	{ 0x1018, 3, 4, IDENTITY,    2,          false },
@@ -77,7 +79,7 @@ static const struct row rows[] = {
 	{ 0x1400, 2, 1, NUMBER,      EVERY_SYNC, false },
 	{ 0x1600, 0, 1, NUMBER,      0,          false },
 	{ 0x1600, 1, 4, NUMBER,      0x60400010, false },
-	{ 0x1600, 2, 4, NUMBER,      0x607a0020, false },
+	{ 0x1600, 2, 4, TARGET,      0,          false },
 	{ 0x1600, 0, 1, NUMBER,      2,          false },
 	{ 0x1400, 1, 4, COB_RPDO_ON, 0,          false },
 	{ 0x1800, 1, 4, COB_READ,    0,          false },
@@ -93,7 +95,14 @@ static const struct row rows[] = {
 	OTHER_PDO(0x1401), OTHER_PDO(0x1402), OTHER_PDO(0x1403),
 	OTHER_PDO(0x1404), OTHER_PDO(0x1405), OTHER_PDO(0x1406),
 	OTHER_PDO(0x1407),
-	OTHER_PDO(0x1801), OTHER_PDO(0x1802), OTHER_PDO(0x1803),
+	OTHER_PDO(0x1801),
+	{ 0x1801, 1, 4, COB_INPUTS,  0,          false },
+	{ 0x1801, 2, 1, INPUTS,      EVERY_SYNC, false },
+	{ 0x1a01, 0, 1, INPUTS,      0,          false },
+	{ 0x1a01, 1, 4, INPUTS,      0x60fd0020, false },
+	{ 0x1a01, 0, 1, INPUTS,      1,          false },
+	{ 0x1801, 1, 4, COB_INPUTS_ON, 0,        false },
+	OTHER_PDO(0x1802), OTHER_PDO(0x1803),
 	OTHER_PDO(0x1804), OTHER_PDO(0x1805), OTHER_PDO(0x1806),
 	OTHER_PDO(0x1807),
 	{ 0,      0, 0, FILE_WRITES, 0,          false },
@@ -102,7 +111,8 @@ static const struct row rows[] = {
 	{ 0x60c2, 1, 1, TIME_VALUE,  0,          false },
 	{ 0x60c2, 2, 1, INDEX_CHECK, 0,          false },
 	{ 0x60c2, 1, 1, VALUE_CHECK, 0,          false },
-	{ 0x6060, 0, 1, NUMBER,      MODE_CSP,   false },
+	{ 0x60c0, 0, 2, SUB_MODE,    0,          true },
+	{ 0x6060, 0, 1, MODE,        0,          false },
 	{ 0x1016, 1, 4, STILL_ON,    0,          false },
 };
 /* clang-format on */
@@ -190,7 +200,13 @@ static bool is_left(const struct drive *d, uint16_t index)
 static uint32_t own_id(const struct drive *d, enum what what)
 {
 	return (what == COB_RPDO || what == COB_RPDO_ON ? CAN_RPDO1 :
-		CAN_TPDO1) + (uint32_t)d->c.node;
+		what == COB_TPDO || what == COB_TPDO_ON ? CAN_TPDO1 :
+		CAN_TPDO2) + (uint32_t)d->c.node;
+}
+
+static bool has_another_id(const struct drive *d, enum what what)
+{
+	return (d->word & PDO_ID) != own_id(d, what) || d->word & PDO_EXTENDED;
 }
 
 static bool is_due(const struct drive *d, const struct row *r)
@@ -204,14 +220,20 @@ static bool is_due(const struct drive *d, const struct row *r)
 		return !(d->word & PDO_OFF);
 	case COB_RPDO:
 	case COB_TPDO:
-		return (d->word & PDO_ID) != own_id(d, r->what) ||
-		       d->word & PDO_EXTENDED;
+		return has_another_id(d, r->what);
+	case COB_INPUTS:
+		return d->c.reads_inputs && has_another_id(d, r->what);
+	case INPUTS:
+	case COB_INPUTS_ON:
+		return d->c.reads_inputs;
 	case SYNC_ID:
 		return (d->word & PDO_ID) != CAN_SYNC ||
 		       d->word & (SYNC_PRODUCES | PDO_EXTENDED);
 	case CYCLE_OFF:
 	case COUNTER_OFF:
 		return d->word != 0;
+	case SUB_MODE:
+		return d->c.interpolates;
 	default:
 		return true;
 	}
@@ -231,14 +253,20 @@ static uint32_t value_of(const struct drive *d, const struct row *r)
 		return d->word | PDO_OFF;
 	case COB_RPDO:
 	case COB_TPDO:
+	case COB_INPUTS:
 		return PDO_OFF | cob | own_id(d, r->what);
 	case COB_RPDO_ON:
 	case COB_TPDO_ON:
+	case COB_INPUTS_ON:
 		return cob | own_id(d, r->what);
 	case TPDO_COUNT:
 		return 2 + d->shows_mode;
 	case CYCLE_US:
 		return c->period_us;
+	case TARGET:
+		return c->interpolates ? 0x60c10120 : 0x607a0020;
+	case MODE:
+		return drive_mode(c);
 	case TIME_INDEX:
 		return (uint32_t)choice_index(d);
 	case TIME_VALUE:
@@ -322,8 +350,9 @@ bool drive_step_fits(struct drive *d, const struct drive_step *s)
 	switch ((enum what)s->what) {
 	case IS_402:
 		return (d->word & 0xffff) == PROFILE_402;
-	case HAS_CSP:
-		return (d->word & CSP_BIT) != 0;
+	case HAS_MODES:
+		return d->word & MODE_BIT(drive_mode(&d->c)) &&
+		       (!d->c.homes || d->word & MODE_BIT(MODE_HOMING));
 	case IDENTITY:
 		return d->word == d->c.identity[s->write.sub - 1];
 	case WAS_ON:
@@ -370,4 +399,17 @@ void drive_step_missing(struct drive *d, const struct drive_step *s)
 	}
 	while (r && r->index == s->write.index)
 		r = row_at(d, ++d->step, &file);
+}
+
+/* What the machine file leaves to somebody else may be written. */
+bool drive_step_owns(const struct drive *d, uint16_t index)
+{
+	bool owns = index == 0x6040 || index == 0x607a || index == 0x60c1;
+
+	for (size_t i = 0; i < NROWS; i++)
+		owns = owns || (rows[i].index == index &&
+				rows[i].what > LAST_READ);
+	for (uint32_t i = 0; i < d->c.nwrites; i++)
+		owns = owns || d->c.write[i].index == index;
+	return owns && !is_left(d, index);
 }

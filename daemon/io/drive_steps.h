@@ -20,9 +20,6 @@ struct drive_step {
 	bool kept;			/* refused: it has that value already */
 };
 
-/* Mode 8, cyclic synchronous position, into 6060. */
-extern const struct drive_write drive_mode_csp;
-
 /**
  * drive_step_due() - get the present step; steps that are not due are skipped.
  * Return: false if no step is left.
@@ -53,6 +50,10 @@ void drive_step_missing(struct drive *d, const struct drive_step *s);
 
 /** drive_step_choose() - try the next value. Return: false: there is none. */
 bool drive_step_choose(struct drive *d);
+
+/** drive_step_owns() - is this object written by the set-up, or sent as a PDO?
+ *  Then it is not for anybody else to write. */
+bool drive_step_owns(const struct drive *d, uint16_t index);
 
 struct interp_diag;
 

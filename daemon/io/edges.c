@@ -26,16 +26,6 @@
 #define IDLE_NS		500000		/* before the first target */
 #define QUICK_WRITES	32
 
-struct told_slot {
-	uint64_t stamp;
-	struct edges_told record;
-};
-
-struct shown_slot {
-	uint64_t stamp;
-	struct edges_shown record;
-};
-
 /* The shortest of the last QUICK_WRITES times, or of twice as many. */
 struct quickest {
 	int64_t before_ns, since_ns;	/* of the last full row; of this row */
@@ -44,9 +34,8 @@ struct quickest {
 
 struct edges {
 	struct edges_config c;
-	struct told_slot told[SLOTS];
-	struct shown_slot shown[SLOTS];
-	uint64_t told_next, shown_next;
+	STAMPED_ROW(struct edges_told, told, told_next, SLOTS);
+	STAMPED_ROW(struct edges_shown, shown, shown_next, SLOTS);
 	struct edges_told last_told;	/* the cycle's and ... */
 	struct edges_shown last_shown;	/* ... the thread's own copies */
 	struct pulser pulser;
@@ -69,22 +58,10 @@ _Static_assert(sizeof(struct edges_shown) % 8 == 0, "whole words");
 
 /* -- Between the threads -------------------------------------------------- */
 
-static struct stamped told_of(struct edges *e)
-{
-	return (struct stamped) { e->told, &e->told_next, SLOTS,
-				  sizeof(e->told[0]) };
-}
-
-static struct stamped shown_of(struct edges *e)
-{
-	return (struct stamped) { e->shown, &e->shown_next, SLOTS,
-				  sizeof(e->shown[0]) };
-}
-
 /* What the cycle told last; if nothing new can be read, @last stays. */
 static void hear(struct edges *e, struct edges_told *last)
 {
-	const struct stamped r = told_of(e);
+	const struct stamped r = STAMPED(e->told, e->told_next);
 	struct edges_told t;
 
 	if (stamped_last(&r, TRIES, &t))
@@ -93,14 +70,14 @@ static void hear(struct edges *e, struct edges_told *last)
 
 void edges_tell(struct edges *e, const struct edges_told *t)
 {
-	const struct stamped r = told_of(e);
+	const struct stamped r = STAMPED(e->told, e->told_next);
 
 	stamped_put(&r, t);
 }
 
 void edges_ask(struct edges *e, struct edges_shown *ret)
 {
-	const struct stamped r = shown_of(e);
+	const struct stamped r = STAMPED(e->shown, e->shown_next);
 	struct edges_shown s;
 
 	if (stamped_last(&r, TRIES, &s))
@@ -195,7 +172,7 @@ static bool is_still(const struct edges *e)
 
 static void show(struct edges *e, bool end)
 {
-	const struct stamped r = shown_of(e);
+	const struct stamped r = STAMPED(e->shown, e->shown_next);
 	struct edges_shown *s = &e->last_shown;
 
 	memcpy(s->put, e->pulser.put, sizeof(s->put));
@@ -314,7 +291,7 @@ int64_t edges_next_ns(int64_t now_ns, int64_t period_ns)
 static void *run(void *arg)
 {
 	struct edges *e = arg;
-	const struct stamped told = told_of(e);
+	const struct stamped told = STAMPED(e->told, e->told_next);
 	struct edges_told first;
 	int64_t next;
 

@@ -11,8 +11,6 @@
 #include <unistd.h>
 
 #define REFRESH_S	2e-3
-#define ANALOGUE	0.01		/* of its range: an analogue value that
-					 * is told as it was asked */
 #define EVER		(UINT32_MAX / 4)	/* versions: before all that a
 						 * place may need */
 
@@ -145,14 +143,15 @@ static bool answers(const struct generator *g, int field)
 	return tells(g, field) || is_taken(g, field);
 }
 
-/* Half a count; of what leaves by a converter, some of its range. */
+/* What was asked is a step of the generator, but for a converter: then it is a
+ * step of that beside it.  What is told is the nearest count of that, or what
+ * the machine file allows beside it. */
 static double slack_of(const struct generator *g, int field)
 {
-	const struct config_way *w = &g->way[field];
-	const double told = g->told[field].scale * 0.501;
+	const struct config_way *told = &g->told[field];
+	const double step = g->dac ? generator_dac_step(g, field) : 0;
 
-	return w->kind == WAY_DAC ? fmax(told, w->gives.max * ANALOGUE) :
-				    fmax(told, w->scale * 0.501);
+	return step + told->scale * 0.501 + told->within;
 }
 
 static bool agrees(const struct generator *g, int field)
@@ -316,15 +315,26 @@ static void generator_read(void *self, struct io_inputs *in)
 	in->generator.trouble = g->says.trouble || (g->down && !g->ill);
 }
 
-/* More than half of its range at once: it has begun anew. */
+/* What a sum can have gone on by since it was told last. */
+static double most_of(const struct generator *g, int field)
+{
+	const double each_s = field == PROCESS_ENERGY_J ? PROCESS_MOST_W :
+				PROCESS_MOST_PULSES_S;
+
+	return each_s * g->period_s * ((double)g->age[field] + g->silent);
+}
+
+/* More than that, or than half of its range: it has begun anew. */
 static void run_on(struct generator *g, int field, uint64_t count)
 {
 	const struct config_way *w = &g->told[field];
 	const uint64_t bits = (UINT64_C(1) << w->bits) - 1;
 	const uint64_t more = (count - g->count[field]) & bits;
 	const bool first = isnan(g->heard[field]);
-	const bool reset = first || more > bits / 2;
-	const double add = reset ? 0 : (double)more * w->scale;
+	const double ahead = (double)more * w->scale;
+	const bool reset = first || more > bits / 2 ||
+			   ahead > most_of(g, field);
+	const double add = reset ? 0 : ahead;
 
 	g->heard[field] = first ? 0 : g->heard[field] + add;
 	generator_counts_hear(g, field, reset);
@@ -391,6 +401,10 @@ static void take(struct generator *g, const struct io_outputs *out)
 	const bool other = out->asked != g->asked;
 
 	if (other) {
+		/* One that is still on its way to other values may tell those
+		 * of before that. */
+		if (g->says.in_force != g->asked)
+			g->settling = g->settle;
 		g->waited = 0;
 		g->says.trouble = false;	/* it is judged anew */
 	}
@@ -446,6 +460,20 @@ static void generator_originate(void *self, const int32_t zero[IO_NAXES])
 	g->axes.originate(g->axes.self, zero);
 }
 
+static void generator_drives(void *self, struct cia402_told *ret)
+{
+	const struct generator *g = self;
+
+	g->axes.drives(g->axes.self, ret);
+}
+
+static bool generator_object(void *self, const struct cia402_request *r)
+{
+	const struct generator *g = self;
+
+	return g->axes.object(g->axes.self, r);
+}
+
 static void generator_close(void *self)
 {
 	struct generator *g = self;
@@ -492,6 +520,7 @@ struct generator *generator_attach(struct io_machine *m,
 	g->axes = *m;
 	have_nothing(g);
 	g->fd = fd;
+	g->period_s = (double)config_period_ns(c) * 1e-9;
 	g->refresh = periods(c, REFRESH_S);
 	g->silent = periods(c, c->generator.silent_ms * 1e-3);
 	g->confirm = periods(c, c->generator.confirm_s);
@@ -516,5 +545,7 @@ struct generator *generator_attach(struct io_machine *m,
 	m->note = generator_note;
 	m->origin = m->origin ? generator_origin : NULL;
 	m->originate = m->originate ? generator_originate : NULL;
+	m->drives = m->drives ? generator_drives : NULL;
+	m->object = m->object ? generator_object : NULL;
 	return g;
 }

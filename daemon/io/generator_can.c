@@ -89,14 +89,19 @@ static void frame_write(struct generator *g, struct generator_frame *f)
 	uint64_t x = content(g, f->sent.id);
 	int err;
 
-	if (++f->age < g->refresh && x == (was & ~counted))
+	f->owed = f->owed || x != (was & ~counted);
+	if (++f->age < g->refresh && !f->owed)
 		return;
 	x |= (was + 0x100) & counted;
 	bytes_put(f->sent.data, x);
 	err = can_socket_send(g->fd, &f->sent);
+	if (f->owed && (err < 0 || f->full > 0))
+		g->settling = g->settle;
+	f->owed = f->owed && err < 0;
 	/* What the queue did not take is sent in the next period. */
 	f->age = err < 0 ? g->refresh : 0;
-	if (err != -ENOBUFS)
+	f->full = err == -ENOBUFS ? f->full + 1 : 0;
+	if (err != -ENOBUFS || f->full > g->silent)
 		bus_is(g, err < 0);
 }
 

@@ -40,16 +40,6 @@ struct word {
 	int32_t field, err;		/* errno; 0: all of it is there */
 };
 
-struct wish_slot {
-	uint64_t stamp;
-	struct wish record;
-};
-
-struct word_slot {
-	uint64_t stamp;
-	struct word record;
-};
-
 struct channel {
 	int fd;				/* of its file; -1: none */
 	char path[PATH];
@@ -63,9 +53,8 @@ struct channel {
 struct generator_dac {
 	struct config_way way[INTERP_NGENERATOR];
 	struct channel channel[INTERP_NGENERATOR];
-	struct wish_slot wishes[SLOTS];
-	struct word_slot words[SLOTS];
-	uint64_t wish_next, word_next;
+	STAMPED_ROW(struct wish, wishes, wish_next, SLOTS);
+	STAMPED_ROW(struct word, words, word_next, SLOTS);
 	_Atomic bool quit;
 	bool runs;			/* the thread does */
 	sem_t wake;
@@ -76,18 +65,6 @@ struct generator_dac {
 	uint64_t seen;			/* word_next */
 	uint32_t since;			/* periods since it is there */
 };
-
-static struct stamped wishes_of(struct generator_dac *d)
-{
-	return (struct stamped) { d->wishes, &d->wish_next, SLOTS,
-				  sizeof(d->wishes[0]) };
-}
-
-static struct stamped words_of(struct generator_dac *d)
-{
-	return (struct stamped) { d->words, &d->word_next, SLOTS,
-				  sizeof(d->words[0]) };
-}
 
 /* -- The thread ------------------------------------------------------------ */
 
@@ -119,7 +96,7 @@ static int channel_put(struct channel *c, int64_t count)
 
 static void carry_out(struct generator_dac *d, const struct wish *w)
 {
-	const struct stamped words = words_of(d);
+	const struct stamped words = STAMPED(d->words, d->word_next);
 	struct word word = { .version = w->version, .again = w->again };
 
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
@@ -142,7 +119,7 @@ static void carry_out(struct generator_dac *d, const struct wish *w)
 static void *run(void *arg)
 {
 	struct generator_dac *d = arg;
-	const struct stamped wishes = wishes_of(d);
+	const struct stamped wishes = STAMPED(d->wishes, d->wish_next);
 	uint32_t again = 0;
 	struct wish w;
 
@@ -164,7 +141,7 @@ static void *run(void *arg)
 void generator_dac_write(struct generator *g)
 {
 	struct generator_dac *d = g->dac;
-	const struct stamped wishes = wishes_of(d);
+	const struct stamped wishes = STAMPED(d->wishes, d->wish_next);
 	struct wish w = { .version = g->asked, .again = d->last.again };
 
 	w.again += g->anew;
@@ -180,7 +157,7 @@ void generator_dac_write(struct generator *g)
 void generator_dac_read(struct generator *g)
 {
 	struct generator_dac *d = g->dac;
-	const struct stamped words = words_of(d);
+	const struct stamped words = STAMPED(d->words, d->word_next);
 	const uint64_t next = __atomic_load_n(&d->word_next, __ATOMIC_ACQUIRE);
 
 	if (next != d->seen && stamped_last(&words, TRIES, &d->word))
@@ -199,6 +176,12 @@ void generator_dac_read(struct generator *g)
 bool generator_dac_waits(const struct generator *g)
 {
 	return g->dac->since <= g->settle;
+}
+
+double generator_dac_step(const struct generator *g, int field)
+{
+	return fabs(g->dac->channel[field].scale) * g->way[field].scale *
+	       (g->way[field].kind == WAY_DAC);
 }
 
 /* -- Open and close -------------------------------------------------------- */

@@ -27,6 +27,7 @@ struct line_chip {
 struct generator_lines {
 	struct line_chip chip[NCHIPS];
 	int nchips;
+	bool due;			/* a chip did not take its levels */
 	struct {
 		uint8_t chip, slot;
 	} at[PROCESS_NFIELDS][CONFIG_WAY_LINES];
@@ -65,16 +66,17 @@ static bool levels(struct generator *g, bool off)
 
 static bool lines_write(struct generator *g)
 {
-	bool all = true;
+	struct generator_lines *l = g->lines;
 
-	if (!levels(g, false))
+	if (!levels(g, false) && !l->due)
 		return true;
-	for (int i = 0; i < g->lines->nchips; i++) {
-		const struct line_chip *c = &g->lines->chip[i];
+	l->due = false;
+	for (int i = 0; i < l->nchips; i++) {
+		const struct line_chip *c = &l->chip[i];
 
-		all = lines_set(c->lines, c->level) == 0 && all;
+		l->due = lines_set(c->lines, c->level) < 0 || l->due;
 	}
-	return all;
+	return !l->due;
 }
 
 static void lines_close(struct generator_lines *l)

@@ -50,16 +50,6 @@ struct word {
 	uint32_t count[PROCESS_NTOLD];
 };
 
-struct wish_slot {
-	uint64_t stamp;
-	struct wish record;
-};
-
-struct word_slot {
-	uint64_t stamp;
-	struct word record;
-};
-
 /* Registers that are written, in the order of their addresses.  Bits that
  * nobody asks for stay as they were read, also those of others. */
 struct bank {
@@ -79,9 +69,8 @@ struct generator_modbus {
 	uint32_t tells;
 	bool blind;			/* it does not tell all that it takes */
 	/* Between the two. */
-	struct wish_slot wishes[SLOTS];
-	struct word_slot words[SLOTS];
-	uint64_t wish_next, word_next;
+	STAMPED_ROW(struct wish, wishes, wish_next, SLOTS);
+	STAMPED_ROW(struct word, words, word_next, SLOTS);
 	_Atomic bool quit;
 	sem_t wake;
 	pthread_t thread;
@@ -93,24 +82,15 @@ struct generator_modbus {
 	/* The thread's. */
 	modbus_t *link;
 	bool up, singles;		/* singles: it has no function 16 */
+	bool met;			/* it was read since the link is up */
 	bool odd;			/* it told another value than it took */
+	bool lost;			/* it may have lost what it does not
+					 * tell */
 	struct bank bank;
 	struct word word;
 	uint32_t took, again;		/* versions; NONE */
 	int64_t took_ns;
 };
-
-static struct stamped wishes_of(struct generator_modbus *m)
-{
-	return (struct stamped) { m->wishes, &m->wish_next, SLOTS,
-				  sizeof(m->wishes[0]) };
-}
-
-static struct stamped words_of(struct generator_modbus *m)
-{
-	return (struct stamped) { m->words, &m->word_next, SLOTS,
-				  sizeof(m->words[0]) };
-}
 
 /* -- The thread: one request ----------------------------------------------- */
 
@@ -125,11 +105,17 @@ static bool is_delay(int err)
 	return err == EMBXACK || err == EMBXSBUSY;
 }
 
+/* It may be switched off meanwhile.  What was in force is not written anew
+ * before that is known: there may be sparks. */
 static void link_down(struct generator_modbus *m)
 {
 	modbus_close(m->link);
-	m->up = false;
-	memset(m->bank.kept, 0, sizeof(m->bank.kept));
+	m->up = m->met = false;
+	if (m->word.version != m->took)
+		memset(m->bank.kept, 0, sizeof(m->bank.kept));
+	else
+		m->lost = m->blind;
+	m->word.version = m->lost ? NONE : m->word.version;
 }
 
 /* An answer that is late must not be taken for the next one: it has until now
@@ -244,6 +230,27 @@ static void bank_take(struct generator_modbus *m, const struct wish *w)
 	}
 }
 
+static int write_registers(struct generator_modbus *m, int from, int to)
+{
+	const struct bank *b = &m->bank;
+	const int err = outcome(m, m->singles ?
+		modbus_write_register(m->link, b->address[from],
+				      b->image[from]) :
+		modbus_write_registers(m->link, b->address[from], to - from,
+				       b->image + from));
+
+	m->took_ns = clock_ns(CLOCK_MONOTONIC);
+	return err;
+}
+
+/* The slave has it: what was read before is old. */
+static void bank_written(struct bank *b, int at)
+{
+	b->kept[at] = b->was_read[at] = true;
+	b->read[at] = b->image[at];
+	b->due[at] = false;
+}
+
 /* Each alone, to know which one it refuses. */
 static int write_singly(struct generator_modbus *m, int from, int to)
 {
@@ -251,13 +258,13 @@ static int write_singly(struct generator_modbus *m, int from, int to)
 	int err = 0;
 
 	for (int i = from; i < to && err >= 0; i++) {
-		const int one = outcome(m, modbus_write_register(m->link,
-					b->address[i], b->image[i]));
+		const int one = write_registers(m, i, i + 1);
 
 		if (one > 0 && !is_delay(one))
 			refused(m, field_at(m, b->address[i]), one);
-		b->kept[i] = one == 0;
-		b->due[i] = one != 0;
+		b->kept[i] = false;
+		if (one == 0)
+			bank_written(b, i);
 		err = one ? one : err;
 	}
 	return err;
@@ -268,27 +275,25 @@ static int write_run(struct generator_modbus *m, int from, int to)
 	struct bank *b = &m->bank;
 	int err;
 
-	if (m->singles || to - from == 1)
+	if (m->singles)
 		return write_singly(m, from, to);
-	err = outcome(m, modbus_write_registers(m->link, b->address[from],
-						to - from, b->image + from));
+	err = write_registers(m, from, to);
 	if (err < 0 || is_delay(err))
 		return err;
 	m->singles = err == EMBXILFUN;
 	if (err > 0)
 		return write_singly(m, from, to);
-	for (int i = from; i < to; i++) {
-		b->kept[i] = true;
-		b->due[i] = false;
-	}
+	for (int i = from; i < to; i++)
+		bank_written(b, i);
 	return 0;
 }
 
-/* Runs of addresses, each a request.  Return: 0, the exception, or -errno. */
+/* Runs of addresses, each a request.  Return: 0, or what one of them came to:
+ * the exception, or -errno. */
 static int write_due(struct generator_modbus *m)
 {
 	const struct bank *b = &m->bank;
-	int err = 0, to;
+	int err = 0, one, to;
 
 	for (int from = 0; from < b->n && err >= 0; from = to) {
 		to = from + 1;
@@ -297,7 +302,8 @@ static int write_due(struct generator_modbus *m)
 		while (to < b->n && b->due[to] &&
 		       b->address[to] == b->address[to - 1] + 1)
 			to++;
-		err = write_run(m, from, to);
+		one = write_run(m, from, to);
+		err = one ? one : err;
 	}
 	return err;
 }
@@ -389,11 +395,21 @@ static int order(const struct generator_modbus *m,
 	return n;
 }
 
+/* Is it there?  To say that this cannot be read is an answer too. */
+static int read_any(struct generator_modbus *m)
+{
+	uint16_t got;
+	const int err = outcome(m, modbus_read_registers(m->link,
+					m->bank.address[0], 1, &got));
+
+	return err < 0 ? err : 0;
+}
+
 static int read_told(struct generator_modbus *m)
 {
 	uint8_t field[PROCESS_NTOLD];
 	const int n = order(m, field);
-	int err = 0, to;
+	int err = n ? 0 : read_any(m), to;
 
 	for (int from = 0; from < n && err == 0; from = to) {
 		to = from + 1;
@@ -421,7 +437,7 @@ static bool connect_up(struct generator_modbus *m)
 
 static void put_word(struct generator_modbus *m)
 {
-	const struct stamped words = words_of(m);
+	const struct stamped words = STAMPED(m->words, m->word_next);
 
 	stamped_put(&words, &m->word);
 }
@@ -433,34 +449,55 @@ static bool is_settled(const struct generator_modbus *m)
 	       clock_ns(CLOCK_MONOTONIC) - m->took_ns >= m->settle_ns;
 }
 
+static void take_wish(struct generator_modbus *m, const struct wish *w)
+{
+	const bool again = w->again != m->again;
+
+	if (!again && w->version == m->took)
+		return;
+	/* One that has lost something gets all of it. */
+	if (again || m->odd || m->lost)
+		memset(m->bank.kept, 0, sizeof(m->bank.kept));
+	m->odd = m->lost = false;
+	m->word.refused = NONE;
+	m->took = w->version;
+	m->again = m->word.again = w->again;
+}
+
+/* What it has to tell before anything is written: bits that are of others, and
+ * whether it has lost something. */
+static void meet(struct generator_modbus *m)
+{
+	const int err = read_told(m);
+
+	m->met = err >= 0 && !is_delay(err);
+	if (err == 0) {
+		m->word.err = 0;
+		m->word.number++;
+	}
+}
+
 static void exchange(struct generator_modbus *m)
 {
-	const struct stamped wishes = wishes_of(m);
+	const struct stamped wishes = STAMPED(m->wishes, m->wish_next);
 	struct wish w;
 	int err;
 
 	if (!stamped_last(&wishes, TRIES, &w))
 		return;
-	if (w.version != m->took || w.again != m->again) {
-		m->word.refused = NONE;
-		m->took_ns = clock_ns(CLOCK_MONOTONIC);
-	}
-	/* One that has lost something gets all of it. */
-	if (w.again != m->again || (w.version != m->took && m->odd))
-		memset(m->bank.kept, 0, sizeof(m->bank.kept));
-	m->odd = m->odd && w.version == m->took && w.again == m->again;
-	m->took = w.version;
-	m->again = m->word.again = w.again;
 	modbus_flush(m->link);
-	if (m->word.number == 0 && read_told(m) < 0)
+	if (!m->met) {
+		meet(m);
 		return;
+	}
+	take_wish(m, &w);
 	bank_take(m, &w);
 	err = write_due(m);
 	if (err < 0 || read_told(m) != 0)
 		return;
 	m->word.err = 0;
 	m->word.number++;
-	if (err == 0 && is_settled(m))
+	if (err == 0 && !m->lost && is_settled(m))
 		m->word.version = m->took;
 }
 
@@ -512,7 +549,7 @@ static bool goes_by_register(const struct generator *g, int field)
 static void modbus_write(struct generator *g)
 {
 	struct generator_modbus *m = g->modbus;
-	const struct stamped wishes = wishes_of(m);
+	const struct stamped wishes = STAMPED(m->wishes, m->wish_next);
 	struct wish w = { .version = g->asked, .again = m->last.again };
 
 	w.again += g->anew;
@@ -562,7 +599,7 @@ static void take_word(struct generator *g, const struct word *w)
 static void modbus_read(struct generator *g)
 {
 	struct generator_modbus *m = g->modbus;
-	const struct stamped words = words_of(m);
+	const struct stamped words = STAMPED(m->words, m->word_next);
 	const uint64_t next = __atomic_load_n(&m->word_next, __ATOMIC_ACQUIRE);
 	struct word w;
 

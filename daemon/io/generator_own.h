@@ -20,6 +20,9 @@
 struct generator_frame {
 	struct can_msg sent;		/* as it was sent last */
 	bool counts;			/* in its second byte */
+	bool owed;			/* the queue has not taken its change */
+	uint32_t full;			/* ... nor anything for so many
+					 * periods */
 	uint32_t age;			/* periods since; refresh: now */
 };
 
@@ -64,6 +67,7 @@ struct generator {
 	struct config_way way[PROCESS_NFIELDS], told[PROCESS_NTOLD];
 	double value[PROCESS_NFIELDS];	/* as asked last; NAN: its own */
 	uint32_t asked;			/* io_outputs.asked of these */
+	double period_s;
 	uint32_t refresh, silent, confirm, settle;	/* periods */
 	struct io_generator says;
 	uint32_t waited;		/* periods for its word */
@@ -193,6 +197,10 @@ void generator_dac_read(struct generator *g);
 /** generator_dac_waits() - is what was asked last not there yet, or not for
  *  settle_ms? */
 bool generator_dac_waits(const struct generator *g);
+
+/** generator_dac_step() - what a step of its converter is of field @field; 0:
+ *  it has none. */
+double generator_dac_step(const struct generator *g, int field);
 
 /* -- generator_modbus.c ---------------------------------------------------- */
 

@@ -11,9 +11,11 @@
 
 #include <math.h>
 
-#define AT(S, id, i, name, unit, scale, help)	[i] = INTERP_TECH_##id,
+#define AT(S, id, i, tpdo, rpdo, ...)	[i] = { INTERP_TECH_##id, rpdo },
 
-static const uint8_t field_of[PLC_NPULSES] = { PLC_PULSE_ROWS(AT, 0) };
+static const struct {
+	uint8_t field, rpdo;
+} value_of[PLC_NPULSES] = { PLC_PULSE_ROWS(AT, 0) };
 
 /* Never 0. */
 static uint16_t number_of(uint32_t asked)
@@ -49,7 +51,7 @@ void generator_plc_write(struct generator *g)
 			     PLC_ASKED_NEGATIVE : 0) |
 			    (is_on(g, INTERP_TECH_ISO) ? PLC_ASKED_ISO : 0));
 	for (int i = 0; i < PLC_NPULSES; i++) {
-		const int field = field_of[i];
+		const int field = value_of[i].field;
 
 		p->value[i] = !is_by_plc(g, field) ? UINT16_MAX :
 			      (uint16_t)generator_count(&g->way[field], field,
@@ -78,31 +80,27 @@ static void hear_generator(struct generator *g)
 	hear(g, PROCESS_FAULT, g->plc->ask.pulse_fault);
 }
 
-static void hear_pulse(struct generator *g)
-{
-	for (int i = 0; i < PLC_NPULSES; i++)
-		hear(g, field_of[i], g->plc->ask.pulse.value[i]);
-}
-
-static bool has_come(struct generator *g, int n)
+/* Takes the values of frame @n.  Return: is it a new one? */
+static bool hear_values(struct generator *g, int n)
 {
 	const bool is_new = g->plc->heard[n] != g->plc_heard[n];
 
 	g->plc_heard[n] = g->plc->heard[n];
+	for (int i = 0; i < PLC_NPULSES && is_new && plc_alive(g->plc); i++)
+		if (value_of[i].rpdo == n)
+			hear(g, value_of[i].field,
+			     g->plc->ask.pulse.value[i]);
 	return is_new;
 }
 
 void generator_plc_read(struct generator *g)
 {
-	const bool generator = has_come(g, 2), pulse = has_come(g, 3);
+	const bool generator = hear_values(g, 2);
 
+	hear_values(g, 3);
 	/* One that comes back is asked from the beginning. */
-	if (!plc_alive(g->plc)) {
+	if (!plc_alive(g->plc))
 		begin_anew(g);
-		return;
-	}
-	if (pulse)
-		hear_pulse(g);
-	if (generator)
+	else if (generator)
 		hear_generator(g);
 }

@@ -14,13 +14,15 @@
 
 #include "interp/tech.h"
 
+#include "cia402.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <math.h>
 #include <stdint.h>
 
 #define IO_NAXES	8		/* as enum interp_axis */
-#define IO_NTOLD	15		/* PROCESS_NTOLD of words/process.h */
+#define IO_NTOLD	16		/* PROCESS_NTOLD of words/process.h */
 
 /* How the pulses of the last period came out, as parts of 1. */
 struct io_shares {
@@ -88,6 +90,8 @@ struct io_inputs {
 	bool door_open;
 	bool dielectric_low;
 	uint32_t limit, home;		/* switches, a bit per axis: on */
+	uint32_t limit_low, limit_high;	/* ... of these limit is on at the end
+					 * of the axis that is known */
 	uint32_t index;			/* index mark passed in this period */
 	enum io_trouble trouble;	/* until a reset */
 	bool steers;			/* axes without trouble still follow
@@ -111,7 +115,12 @@ struct io_inputs {
 	struct io_generator generator;
 	int32_t actual[IO_NAXES];	/* pulses, measured or last written */
 	int32_t own[IO_NAXES];		/* pulses from the drive's own zero, if
-					 * it keeps one without power */
+					 * it keeps one without power, or has
+					 * found one */
+	uint32_t homing;		/* bit per axis: its drive is at
+					 * io_outputs.home; */
+	uint32_t homed, unfound;	/* ... and has found its zero, or has
+					 * not; until home is 0 */
 };
 
 /* What the cycle wants, once a period. */
@@ -124,6 +133,8 @@ struct io_outputs {
 	bool rapid;			/* positioning through free space */
 	bool enable;			/* axes under power */
 	bool reset;			/* for a period: an operator's reset */
+	uint32_t home;			/* bit per axis: its drive is to find
+					 * its zero by itself */
 	bool power;			/* sparks allowed */
 	bool sense;			/* the voltage to feel contact by */
 	bool pump;			/* dielectric */
@@ -166,6 +177,13 @@ struct io_machine {
 	/* Take over these counts from the edmd before, so that places go on
 	 * from there.  Startup only; NULL if origin is. */
 	void (*originate)(void *self, const int32_t zero[IO_NAXES]);
+	/* What is known of the drives of a bus.  NULL if it has none.
+	 * RT-safe. */
+	void (*drives)(void *self, struct cia402_told *ret);
+	/* Read or set an object of a drive; what comes of it is told by
+	 * drives().  Return: false: another one is under way.  NULL if drives
+	 * is.  RT-safe. */
+	bool (*object)(void *self, const struct cia402_request *r);
 	bool stays;			/* nothing moves it while edmd is away:
 					 * it is simulated */
 	uint32_t edges_per_cycle;	/* the most pulses of an axis in a

@@ -49,6 +49,12 @@ void plc_beat(struct plc *p, uint16_t ms)
 
 /* -- From the PLC --------------------------------------------------------- */
 
+/* It ends before this one: that is not told, as with all bits set. */
+static bool at_end(const struct can_msg *m, const struct plc_signal *s)
+{
+	return s->byte >= m->len;
+}
+
 static void hear_rpdo(struct plc *p, const struct can_msg *m, int n)
 {
 	struct plc whole = { .ask = p->ask };
@@ -60,8 +66,9 @@ static void hear_rpdo(struct plc *p, const struct can_msg *m, int n)
 
 		if (!s->asked || s->pdo != n)
 			continue;
-		if (!plc_take(&whole, s, can_get(m->data + s->byte,
-						 (int)plc_bytes(s->type)))) {
+		if (!plc_take(&whole, s, at_end(m, s) ? (uint32_t)s->max :
+			      can_get(m->data + s->byte,
+				      (int)plc_bytes(s->type)))) {
 			p->refused++;
 			return;
 		}
@@ -141,25 +148,29 @@ bool plc_receive(struct plc *p, const struct can_msg *m)
 	} kinds[] = {
 		{ CAN_NMT, 2, 0, hear_nmt },
 		{ CAN_RPDO1, 8, 1, hear_request },
-		{ CAN_RPDO2, 5, 1, hear_generator },
+		{ CAN_RPDO2, 7, 1, hear_generator },
+		{ CAN_RPDO2, 5, 1, hear_generator },	/* no ToldServo */
 		{ CAN_RPDO3, 8, 1, hear_pulse },
 		{ CAN_SDO_ASK, 8, 1, plc_sdo },
 		{ CAN_TPDO1, 8, 1, hear_twin },
 		{ CAN_HEARTBEAT, 1, 1, hear_twin },
 	};
 
+	bool ours = false;
+
 	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
 		if (m->id != kinds[i].id + kinds[i].plus_node * p->node)
 			continue;
 		if (p->stopped && m->id == CAN_SDO_ASK + p->node)
 			return true;
-		if (m->len == kinds[i].len)
+		ours = true;
+		if (m->len == kinds[i].len) {
 			kinds[i].hear(p, m);
-		else
-			p->malformed++;
-		return true;
+			return true;
+		}
 	}
-	return false;
+	p->malformed += ours;
+	return ours;
 }
 
 /* Lost until its toggle turns again; what it asked for last is void. */

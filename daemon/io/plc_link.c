@@ -194,10 +194,12 @@ void plc_link_write(struct plc_link *l, const struct plc_tell *tell)
 		return;
 	l->plc.tell = *tell;
 	n = plc_emit(&l->plc, out);
-	for (size_t i = 0; i < n; i++) {
-		if (can_socket_send(l->fd, &out[i]) < 0)
+	/* A number never goes out without the frame that it is of. */
+	for (size_t i = 0; i < n; i++)
+		if (can_socket_send(l->fd, &out[i]) < 0) {
 			add(l, PLC_UNSENT);
-	}
+			return;
+		}
 }
 
 /* -- The other thread ----------------------------------------------------- */

@@ -84,22 +84,23 @@ S(0x2001, sub, I32, TELL, pos[(sub) - 1], pdo, byte, -2147483648, 2147483647, \
   "Position" axis, "pulses", 1, "target of axis " axis)
 
 /*
- * P(S, id, i, name, unit, scale, help): value @i of a generator that the PLC
- * sets, by enum interp_tech_id.
+ * P(S, id, i, tpdo, rpdo, byte, name, unit, scale, help): value @i of a
+ * generator that the PLC sets, by enum interp_tech_id.
  */
 #define PLC_PULSE_ROWS(P, S) \
-P(S, PEAK_A, 0, "Current", "A", 0.1, "peak current") \
-P(S, ON_US, 1, "OnTime", "us", 0.1, "on time") \
-P(S, OFF_US, 2, "OffTime", "us", 0.1, "off time") \
-P(S, IGNITION_V, 3, "Voltage", "V", 0.1, "open-circuit voltage")
+P(S, PEAK_A, 0, 6, 3, 0, "Current", "A", 0.1, "peak current") \
+P(S, ON_US, 1, 6, 3, 2, "OnTime", "us", 0.1, "on time") \
+P(S, OFF_US, 2, 6, 3, 4, "OffTime", "us", 0.1, "off time") \
+P(S, IGNITION_V, 3, 6, 3, 6, "Voltage", "V", 0.1, "open-circuit voltage") \
+P(S, SERVO_V, 4, 0, 2, 5, "Servo", "V", 0.1, "reference of the gap servo")
 
-#define PLC_NPULSES	4
+#define PLC_NPULSES	5
 
-#define PLC_ASKED(S, id, i, name, unit, scale, help) \
-S(0x2002, (i) + 1, U16, TELL, pulse.value[i], 6, 2 * (i), 0, 65535, \
+#define PLC_ASKED(S, id, i, tpdo, rpdo, byte, name, unit, scale, help) \
+S(0x2002, (i) + 1, U16, TELL, pulse.value[i], tpdo, byte, 0, 65535, \
   "Asked" name, unit, scale, help "; all bits set: its own setting")
-#define PLC_TOLD(S, id, i, name, unit, scale, help) \
-S(0x2101, (i) + 4, U16, ASK, pulse.value[i], 3, 2 * (i), 0, 65535, \
+#define PLC_TOLD(S, id, i, tpdo, rpdo, byte, name, unit, scale, help) \
+S(0x2101, (i) + 4, U16, ASK, pulse.value[i], rpdo, byte, 0, 65535, \
   "Told" name, unit, scale, help " of the generator")
 
 /* B(id, of, bit, name, help): bit @bit of the signal @of is PLC_@id in C. */
@@ -185,9 +186,9 @@ PLC_TPDO(O, 5, 0x1804, 0x500) \
 PLC_TPDO(O, 6, 0x1805, 0x680) \
 O(0x2000, 0, U8, 15, FIXED, "Machine, highest sub-index") \
 O(0x2001, 0, U8, 8, FIXED, "Positions, highest sub-index") \
-O(0x2002, 0, U8, 4, FIXED, "Pulse, highest sub-index") \
+O(0x2002, 0, U8, 5, FIXED, "Pulse, highest sub-index") \
 O(0x2100, 0, U8, 6, FIXED, "PLC, highest sub-index") \
-O(0x2101, 0, U8, 7, FIXED, "Generator, highest sub-index")
+O(0x2101, 0, U8, 8, FIXED, "Generator, highest sub-index")
 
 #define PLC_ERROR_AT(O, i) \
 O(0x1003, i, U32, 0, ERROR, "Error " #i)

@@ -103,11 +103,13 @@ static void sim_read(void *self, struct io_inputs *in)
 		.energy_j = sparks && !s->broken ? sim_pulses_j(s) : 0,
 		.energy_valid = true,
 		.wire_broken = s->broken,
+		.generator = { .in_force = s->out.asked },
 	};
-	if (sparks) {
+	in->shares_valid = sparks || s->comparators;
+	if (s->comparators)
+		in->shares = sim_pulses_lines(s, sparks);
+	else if (sparks)
 		in->shares = sim_pulses_shares(s);
-		in->shares_valid = true;
-	}
 	sim_axes_measure(s, in);
 	sim_switches_read(s, in);
 }
@@ -137,6 +139,7 @@ int io_sim_open_seed(struct io_machine *m, const struct machine_config *c,
 	if (!s)
 		return -ENOMEM;
 	s->p = c->sim;
+	s->comparators = c->gap.source == GAP_LINES;
 	s->period_s = (double)config_period_ns(c) * 1e-9;
 	if (c->axes.present & 1u << INTERP_Z)
 		s->z_pulse_mm = c->axes.axis[INTERP_Z].pulse_mm;

@@ -128,26 +128,35 @@ static double cover(struct sim_map *m, const double at_mm[3])
 	return n ? height / (double)n : 0;
 }
 
-static double way_mm(const struct sim_map *m, const double at_mm[3])
+static double across_mm(const struct sim_map *m, const double at_mm[3])
 {
-	return hypot(hypot(at_mm[0] - m->at_mm[0], at_mm[1] - m->at_mm[1]),
-		     at_mm[2] - m->at_mm[2]);
+	return hypot(at_mm[0] - m->at_mm[0], at_mm[1] - m->at_mm[1]);
+}
+
+/* Across the grid, cells are met now and then: a mean over some of them counts.
+ * Down it, each step meets all cells below, and counts as it is. */
+static void count(struct sim_map *m, double across, double way, double height)
+{
+	const double now = height / way;
+	const double keep = m->known ?
+		exp(-way / (WINDOW_CELLS * m->cell_mm)) : 0;
+
+	m->mean = keep * m->mean + (1 - keep) * now;
+	m->known = true;
+	m->share = fmin(1, now + (m->mean - now) * across / way);
 }
 
 double sim_map_cut(struct sim_map *m, const double at_mm[3])
 {
-	const double way = m->placed ? way_mm(m, at_mm) : 0;
+	const double across = m->placed ? across_mm(m, at_mm) : 0;
+	const double way = m->placed ?
+			   hypot(across, at_mm[2] - m->at_mm[2]) : 0;
 	const double height = cover(m, at_mm);
 
 	for (int i = 0; i < 3; i++)
 		m->at_mm[i] = at_mm[i];
-	if (way > 0) {
-		const double keep = m->known ?
-			exp(-way / (WINDOW_CELLS * m->cell_mm)) : 0;
-
-		m->share = keep * m->share + (1 - keep) * height / way;
-		m->known = true;
-	}
+	if (way > 0)
+		count(m, across, way, height);
 	m->placed = true;
-	return fmin(1, m->share);
+	return m->share;
 }

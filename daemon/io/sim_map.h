@@ -43,8 +43,9 @@ struct sim_map {
 	double radius_mm, cell_mm;
 	double at_mm[3];		/* X Y Z of the last step */
 	bool placed;			/* at_mm is known */
-	bool known;			/* so is share */
-	double share;
+	bool known;			/* so is the mean */
+	double mean;			/* of the shares of late steps */
+	double share;			/* of the last step */
 };
 
 /**
@@ -67,8 +68,8 @@ double sim_map_step_mm(const struct sim_map *m);
  * sim_map_cut() - the electrode's end has moved here from where it was last.
  *
  * After sim_map_lift() the first call only says where it is.
- * Return: the part of the frontal area that met ground on this step, 0 ... 1,
- * as a mean over about two cells of the way.
+ * Return: the part of the frontal area that met ground on this step, 0 ... 1;
+ * of its way across the grid a mean over about two cells.
  */
 double sim_map_cut(struct sim_map *m, const double at_mm[3]);
 

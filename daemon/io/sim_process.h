@@ -71,6 +71,7 @@ struct sim {
 	struct io_outputs out;		/* as last written */
 	struct pulse_set pulse;
 	struct pulse_train train;	/* of the last period */
+	bool comparators;		/* they see the gap, and no counter */
 
 	/* Axes. */
 	double at_mm;			/* on the path, as the axes stand */
@@ -146,6 +147,11 @@ void sim_pulses_train(struct sim *s, double gap_mm);
  * numbers.
  */
 struct io_shares sim_pulses_shares(struct sim *s);
+/**
+ * sim_pulses_lines() - what three comparators say, each 0 or 1: what became of
+ * most pulses of the period; without @sparks, what a steady supply shows.
+ */
+struct io_shares sim_pulses_lines(struct sim *s, bool sparks);
 /**
  * sim_pulses_volts() - the voltage as a sensor reads it, with @sparks or a
  * steady supply.

@@ -228,6 +228,17 @@ struct io_shares sim_pulses_shares(struct sim *s)
 	return shares_of(n[0], n[1], n[2], n[3]);
 }
 
+struct io_shares sim_pulses_lines(struct sim *s, bool sparks)
+{
+	const struct io_shares n = sparks ? sim_pulses_shares(s) :
+		(struct io_shares) { .open = (float)(1 - s->train.shorted),
+				     .shorted = (float)s->train.shorted };
+
+	return n.shorted > 0.5f ? (struct io_shares) { .shorted = 1 } :
+	       n.open > 0.5f ? (struct io_shares) { .open = 1 } :
+			       (struct io_shares) { .spark = 1 };
+}
+
 /*
  * A sum of n exponential waits, by its mean: a gamma deviate, near enough by
  * the cube of a normal one (Wilson and Hilferty, 1931).

@@ -197,6 +197,7 @@ static uint32_t axes_named(const char *text)
 static void say_axes(struct jobs *j, const char *vouched, char reason[320])
 {
 	const uint32_t now = axes_named(vouched);
+	const char *told = interrupt_told(j, now);
 	char home[INTERP_NAXES + 1] = "", say[INTERP_NAXES + 1] = "";
 	size_t nhome = 0, nsay = 0;
 
@@ -219,6 +220,8 @@ static void say_axes(struct jobs *j, const char *vouched, char reason[320])
 			 "the power failed; see that the machine stands where "
 			 "it shows, then name these axes: resume JOB %s", say,
 			 say);
+	else if (told)
+		snprintf(reason, 320, "%s", told);
 }
 
 static bool are_same_files(const struct jobs *j, const struct again *a)

@@ -93,16 +93,18 @@ static void ask_setting(const struct jobs *j, const struct asks_what *w,
 			char *to, size_t size)
 {
 	const struct shm_snapshot *s = snap_of(j);
-	char names[120];
+	char names[120], of[16] = "";
 
+	if (s->cond_letter)
+		snprintf(of, sizeof(of), " of %c%u", s->cond_letter,
+			 s->cond_number);
 	if (w->confirmed)
 		snprintf(to, size, "the generator is set; edmctl start goes "
 			 "on");
 	else
-		snprintf(to, size, "set %s of %c%u at the generator; edmctl "
-			 "done, then edmctl start",
-			 process_names(w->of, names, sizeof(names)),
-			 s->cond_letter, s->cond_number);
+		snprintf(to, size, "set %s%s at the generator; edmctl done, "
+			 "then edmctl start",
+			 process_names(w->of, names, sizeof(names)), of);
 }
 
 static void say(struct jobs *j, const struct asks_what *w, char *to,

@@ -153,6 +153,9 @@ static int compiler_text(struct compiler *c, const struct config_tech *tech,
 	int err;
 
 	config_compiling(c->request.config, tech, &of);
+	err = config_compiling_set(&of, c->request.setting, &c->result.diag);
+	if (err)
+		return err;
 	of.text.nc.notes = &notes;
 	of.text.nc.segs_max = c->request.segs_max ? c->request.segs_max :
 						    SEGS_MAX;

@@ -44,6 +44,7 @@ struct compiler_request {
 	bool wants_wear;		/* of its electrodes */
 	const char *wants_block;	/* to be loaded on this machine; NULL:
 					 * no */
+	char setting[INTERP_SETTING_MAX];	/* interp/setting.h */
 	const char *dialect;		/* NULL: by machine file and name */
 	double work_mm[INTERP_NC_NWORK][INTERP_NAXES];	/* offset_request() */
 	double work_turn_deg[INTERP_NC_NWORK];

@@ -8,9 +8,13 @@
  * process that removes half of what was believed is noticed in the condition
  * in which it does, and no jump, retract or stand is taken for progress.
  *
- * A factor is what cutting takes of its forecast: 2 is twice as long.  A
- * condition that was not cut yet has that of the others.  Factors that earlier
- * jobs had are where the job begins.
+ * How much slower the process is than was believed is found so that forecasts
+ * of other removals explain what was cut: what is cut at the programmed feed
+ * says little of it, and has little of it.  What is left unexplained is a plain
+ * factor.  A condition that was not cut yet has both of the others.
+ *
+ * A factor is what cutting takes of its forecast: 2 is twice as long.  Those
+ * that earlier jobs had are where the job begins.
  *
  * Threads: one, that of the event loop.
  */
@@ -26,9 +30,10 @@ struct eta_cond {
 	double learnt;			/* factor of earlier jobs; 0: none */
 	double passed_s, expected_s;	/* of the parts that are done; expected:
 					 * as forecast */
-	double late_passed_s, late_expected_s;	/* what is long ago counts
-						 * less */
-	double all_s;			/* of all parts, as forecast */
+	double late_passed_s, late_s[FORECAST_REMOVALS];	/* what is long
+					 * ago counts less */
+	double all_s[FORECAST_REMOVALS];	/* of all parts, as forecast */
+	double left_s[FORECAST_REMOVALS];	/* ... and of those to come */
 	bool told;			/* that the job takes longer by it */
 };
 
@@ -39,7 +44,8 @@ struct eta {
 	struct eta_cond *cond;		/* as many as the forecast has */
 	uint32_t at;			/* the part that it is in ... */
 	double entered_s;		/* ... since this time of the job */
-	double job_s;			/* at the last look */
+	double job_s;			/* at the last look, without ... */
+	double waited_s;		/* ... the waits until then */
 	double least_s;			/* smallest left_s since it was told
 					 * that the job takes longer */
 };
@@ -57,7 +63,8 @@ struct eta_told {
 	double left_s;			/* -1: not known */
 	double min_s, max_s;		/* it lies between these */
 	uint32_t cond;			/* that changes most, ... */
-	double factor;			/* ... and its factor */
+	double factor;			/* ... its factor, ... */
+	double by_s;			/* ... and by how much */
 };
 
 /** eta_give() - use @of for program @n; @of has nothing any more.
@@ -66,6 +73,10 @@ int eta_give(struct eta *l, struct forecast *of, uint32_t n);
 
 /** eta_learnt() - earlier jobs had this factor in condition @cond. */
 void eta_learnt(struct eta *l, uint32_t cond, double factor);
+
+/** eta_wait() - from the last look until @job_s the job waited for something
+ *  that is no part of it, as an M code of the PLC. */
+void eta_wait(struct eta *l, double job_s);
 
 /** eta_look() - the farthest place is @far_mm, after @job_s of the job.  It may
  *  be called for the first time anywhere in the job. */

@@ -7,6 +7,7 @@
 #include "jobs_log.h"
 #include "store_learnt.h"
 #include "compiling.h"
+#include "stands.h"
 #include "thread.h"
 
 #include <errno.h>
@@ -60,12 +61,15 @@ static int forecaster_work(struct forecasting *f)
 		  shm_program_map(&block, &bytes, f->block) :
 		  shm_program_read(&block, &bytes, f->machine, f->n);
 
+	/* A job that is over has no program any more. */
 	if (err < 0)
-		return err;
+		return err == -ENOENT ? -ECANCELED : err;
 	err = interp_program_map(&p, block, bytes);
 	if (err == 0)
 		err = forecast_make(&f->forecast, f->config, &p, f->most_s,
 				    &f->ends);
+	if (err == 0 && f->block < 0)
+		err = forecast_vary(&f->forecast, f->config, &p, &f->ends);
 	shm_program_unmap(block, bytes);
 	return err;
 }
@@ -112,7 +116,7 @@ static void take_learnt(struct jobs *j)
 	struct eta *l = &j->eta;
 
 	for (uint32_t i = 0; l->cond && i < l->forecast.nconds; i++)
-		if (l->cond[i].all_s > 0)
+		if (*l->cond[i].all_s > 0)
 			eta_learnt(l, i, learnt_factor(j, l->forecast.cond[i],
 						       j->forecaster.electrode,
 						       j->forecaster.work));
@@ -139,11 +143,11 @@ static double whole_s(struct jobs *j, const struct forecasting *f)
 		return -1;
 	for (uint32_t i = 0; i < of->nparts; i++) {
 		const struct forecast_part *p = &of->part[i];
-		const double factor = p->cut_s > 0 ?
+		const double factor = *p->cut_s > 0 ?
 			learnt_factor(j, of->cond[p->cond], f->electrode,
 				      f->work) : 0;
 
-		s += p->cut_s * (factor > 0 ? factor : 1);
+		s += *p->cut_s * (factor > 0 ? factor : 1);
 	}
 	return s;
 }
@@ -246,10 +250,12 @@ static int begin(struct jobs *j, const struct store_job *job, int block,
 static void follow(struct jobs *j)
 {
 	const struct shm_snapshot *s = &j->queue.snap;
+	const double job_s = (double)s->job_cycles * (double)s->period_ns / 1e9;
 	struct eta_told t;
 
-	eta_look(&j->eta, s->far_mm, (double)s->job_cycles *
-		 (double)s->period_ns / 1e9);
+	if (s->stand != STAND_NONE)
+		eta_wait(&j->eta, job_s);
+	eta_look(&j->eta, s->far_mm, job_s);
 	if (!eta_rose(&j->eta, &t))
 		return;
 	jobs_note(j, &(struct jobs_note) {

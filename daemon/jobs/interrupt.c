@@ -98,17 +98,71 @@ void interrupt_answered(struct jobs *j)
  */
 #define NOT_SEEN	INT64_MIN
 
+static const char *key_of(const char *what, int axis)
+{
+	static char key[16];
+
+	snprintf(key, sizeof(key), "%s %c", what, INTERP_AXIS_LETTERS[axis]);
+	return key;
+}
+
 static const char *way_key(int axis)
 {
-	static char key[] = "seen-nm X";
+	return key_of("seen-nm", axis);
+}
 
-	key[sizeof(key) - 2] = INTERP_AXIS_LETTERS[axis];
-	return key;
+static const char *own_key(int axis)
+{
+	return key_of("own-nm", axis);
 }
 
 static double shown_mm(const struct shm_snapshot *s, int axis)
 {
 	return s->pos[axis] * s->pulse_mm[axis];
+}
+
+/* What an absolute drive counts where its axis is shown at 0, mm; NAN: there is
+ * none, or it is not up. */
+static double own_mm(const struct jobs *j, const struct shm_snapshot *s, int i)
+{
+	const struct config_drive *d = &j->config->drive[i];
+
+	if (!s->has_origin || !d->absolute)
+		return (double)NAN;
+	return (s->origin[i] * d->pulses / d->increments + s->home_shift[i]) *
+	       s->pulse_mm[i];
+}
+
+/* The place of axis @i that its drive tells, which was not asleep while the
+ * power was off; NAN: nothing tells.  A drive counts modulo 2^32. */
+static double told_mm(struct jobs *j, int i)
+{
+	const struct config_drive *d = &j->config->drive[i];
+	const struct shm_snapshot *s = &j->link.snap;
+	const int64_t then = store_number(j->store, own_key(i), NOT_SEEN);
+	const double turn_mm = 0x1p32 * d->pulses / d->increments *
+			       s->pulse_mm[i];
+
+	if (then == NOT_SEEN)
+		return (double)NAN;
+	return shown_mm(s, i) + remainder(own_mm(j, s, i) - 1e-6 * (double)then,
+					  turn_mm);
+}
+
+/* NAN contradicts nothing. */
+static bool contradicts(const struct jobs *j, double told, double mm)
+{
+	return fabs(told - mm) > j->config->can402.resync_mm;
+}
+
+static void keep_own(struct jobs *j, const struct shm_snapshot *was, int i)
+{
+	const double own = own_mm(j, was, i);
+
+	if (was->axes_key != j->link.snap.axes_key)
+		store_set_number(j->store, own_key(i), NOT_SEEN);
+	else if (!isnan(own) && !(j->unseen >> i & 1))
+		store_set_number(j->store, own_key(i), llround(own * 1e6));
 }
 
 /* The places of this edmd are not those of the one before; @was NULL: nobody
@@ -127,7 +181,34 @@ static void keep_seen(struct jobs *j, const struct shm_snapshot *was)
 			way += llround((shown_mm(was, i) -
 					shown_mm(&j->link.snap, i)) * 1e6);
 		store_set_number(j->store, way_key(i), way);
+		if (was)
+			keep_own(j, was, i);
 	}
+}
+
+#define NOT_UP	"the drives are not up yet; edmd's journal tells which; again " \
+		"when they are"
+
+/* Its drive knows where it stands, and was not asked yet. */
+static bool is_asleep(const struct jobs *j, int i)
+{
+	return j->drives_to_ask && j->config->drive[i].absolute;
+}
+
+/* Was axis @i moved while edmd was away, as its drive tells?  NULL, or that. */
+static const char *moved(struct jobs *j, int i)
+{
+	const int64_t way = store_number(j->store, way_key(i), 0);
+	const double told = told_mm(j, i);
+	const double seen = shown_mm(&j->link.snap, i) + 1e-6 * (double)way;
+	static char text[160];
+
+	if (way == NOT_SEEN || !contradicts(j, told, seen))
+		return NULL;
+	snprintf(text, sizeof(text), "%c was seen last at %.3f, and its drive "
+		 "tells %.3f: it was moved; look, and place %c is MM",
+		 INTERP_AXIS_LETTERS[i], seen, told, INTERP_AXIS_LETTERS[i]);
+	return text;
 }
 
 const char *interrupt_as_seen(struct jobs *j, int axis, double *ret_mm)
@@ -136,6 +217,7 @@ const char *interrupt_as_seen(struct jobs *j, int axis, double *ret_mm)
 						       0)) >> axis & 1;
 	const int64_t way = store_number(j->store, way_key(axis), 0);
 	struct shm_snapshot s;
+	double told;
 
 	if (!in_doubt)
 		return "this axis is shown where it was seen last; place AXIS "
@@ -146,16 +228,70 @@ const char *interrupt_as_seen(struct jobs *j, int axis, double *ret_mm)
 	if (!j->link.status || !shm_snapshot(j->link.status, &s))
 		return "edmd is not there";
 	*ret_mm = shown_mm(&s, axis) + 1e-6 * (double)way;
+	if (is_asleep(j, axis))
+		return NOT_UP;
+	told = told_mm(j, axis);
+	if (!isnan(told))
+		*ret_mm = told;
+	return moved(j, axis);
+}
+
+const char *interrupt_placed(struct jobs *j, int axis, double mm)
+{
+	const double told = told_mm(j, axis);
+	static char text[160];
+	const int n = snprintf(text, sizeof(text), "%c was shown at %.3f; "
+			       "somebody says that it stands at %.3f",
+			       INTERP_AXIS_LETTERS[axis],
+			       shown_mm(&j->link.snap, axis), mm);
+
+	if (contradicts(j, told, mm))
+		snprintf(text + n, sizeof(text) - (size_t)n,
+			 ", and its drive tells %.3f", told);
+	jobs_note(j, &(struct jobs_note) { .kind = "placed" }, "%s", text);
+	store_set_number(j->store, way_key(axis), 0);
+	store_set_number(j->store, own_key(axis), NOT_SEEN);
+	set_unseen(j, j->unseen & ~(1u << axis));
+	return text;
+}
+
+const char *interrupt_told(struct jobs *j, uint32_t axes)
+{
+	static char text[160];
+
+	for (axes &= unhomeable(j); axes; axes &= axes - 1) {
+		const int i = __builtin_ctz(axes);
+		const double shown = shown_mm(&j->link.snap, i);
+		const double told = told_mm(j, i);
+
+		if (is_asleep(j, i))
+			return NOT_UP;
+		if (!contradicts(j, told, shown))
+			continue;
+		snprintf(text, sizeof(text), "%c is shown at %.3f, and its "
+			 "drive tells that it stands at %.3f: edmctl place "
+			 "%c is MM, as it stands", INTERP_AXIS_LETTERS[i],
+			 shown, told, INTERP_AXIS_LETTERS[i]);
+		return text;
+	}
 	return NULL;
 }
 
-void interrupt_placed(struct jobs *j, int axis, double mm)
+void interrupt_tick(struct jobs *j)
 {
-	jobs_note(j, &(struct jobs_note) { .kind = "placed" },
-		  "%c was shown at %.3f; somebody says that it stands at %.3f",
-		  INTERP_AXIS_LETTERS[axis], shown_mm(&j->link.snap, axis), mm);
-	store_set_number(j->store, way_key(axis), 0);
-	set_unseen(j, j->unseen & ~(1u << axis));
+	if (!j->drives_to_ask || !j->link.snap.has_origin)
+		return;
+	j->drives_to_ask = false;
+	for (int i = 0; i < INTERP_NAXES; i++) {
+		const char *why = unhomeable(j) >> i & 1 ? moved(j, i) : NULL;
+
+		if (!why)
+			continue;
+		note_unseen(j, 1u << i);
+		queue_wait(j);
+		jobs_note(j, &(struct jobs_note) { .kind = "waits" }, "%s",
+			  why);
+	}
 }
 
 const char *interrupt_unseen(const struct jobs *j)
@@ -193,6 +329,7 @@ void interrupt_attach(struct jobs *j)
 	if (goes_on(j, was))
 		return;
 	keep_seen(j, j->last.there ? was : NULL);
+	j->drives_to_ask = true;
 	if (!j->last.there)
 		return;
 	for (uint32_t i = 0; i < INTERP_NAXES; i++) {

@@ -63,7 +63,15 @@ const char *interrupt_lost(const struct jobs *j);
  */
 const char *interrupt_as_seen(struct jobs *j, int axis, double *ret_mm);
 
-/** interrupt_placed() - edmd shows @axis at @mm from now on. */
-void interrupt_placed(struct jobs *j, int axis, double mm);
+/** interrupt_placed() - edmd shows @axis at @mm from now on.  Return: that, and
+ *  where it was shown, in words. */
+const char *interrupt_placed(struct jobs *j, int axis, double mm);
+
+/** interrupt_told() - does the drive of one of @axes, which nothing homes, tell
+ *  another place than is shown, or is it not up?  Return: NULL, or that. */
+const char *interrupt_told(struct jobs *j, uint32_t axes);
+
+/** interrupt_tick() - when the drives of a new edmd are up, ask that of all. */
+void interrupt_tick(struct jobs *j);
 
 #endif /* JOBS_INTERRUPT_H */

@@ -74,6 +74,7 @@ struct jobs {
 					 * edmd shows, and STORE_UNSEEN; a
 					 * start or a resume answers for
 					 * them */
+	bool drives_to_ask;		/* interrupt_tick() */
 	crypto_hash_sha256_state files;	/* files.h */
 	uint8_t config_hash[32];	/* files_hash() for the job that is
 					 * loaded */

@@ -112,7 +112,7 @@ static bool shape_fits(const struct seal *m, const char *shape,
 
 /* The first q of a shape is the fingerprint of the type. */
 #define SHAPE_COMMAND	"qqsqssqs"
-#define SHAPE_CHUNK	"qqsqssqHiiqbiqiia"
+#define SHAPE_CHUNK	"qqsqssqHiiqbiqisia"
 
 /* Tell the sender why its packet is not accepted. */
 static void tell_refused(struct jobs_lcm *w, const struct jobs_lcm_ack *to,
@@ -241,7 +241,7 @@ static bool on_chunk(struct jobs_lcm *w, const struct origin *o)
 		.bytes = m.bytes, .sha256 = m.sha256, .chunk = m.chunk,
 		.chunks = m.chunks, .offset = m.offset, .hold = m.hold != 0,
 		.from_line = m.from_line, .from_mm = m.from_mm,
-		.electrode = m.electrode,
+		.electrode = m.electrode, .setting = m.setting,
 		.size = (uint32_t)m.size, .data = m.data,
 		.signed_us = trust_signed_us(w->trust, s),
 		.by = o->packet->key, .from = o->packet->from,
@@ -313,8 +313,10 @@ void jobs_lcm_look(struct jobs_lcm *w, int64_t now_us)
 		return;
 	w->tried_us = now_us;
 	err = udpm_open(&w->net, &w->url);
-	if (err == 0)
+	if (err == 0) {
+		udpm_choose(w->net, (const char *[]){ w->command, w->job }, 2);
 		err = watch(w, udpm_fd(w->net));
+	}
 	tell_net(w, err);
 }
 

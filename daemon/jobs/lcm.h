@@ -57,6 +57,7 @@ struct jobs_lcm_chunk {
 	int32_t from_line;		/* as in edm.lcm */
 	double from_mm;
 	int32_t electrode;		/* 0: none was said */
+	const char *setting;
 	uint32_t size;
 	const uint8_t *data;
 	int64_t signed_us;		/* when, by our clock */

@@ -267,7 +267,7 @@ static void pending_begin(struct link_pending *p, uint64_t id,
 	*p = (struct link_pending) {
 		.id = id,
 		.until_us = now_us + (c->take_us ? c->take_us : TAKE_US) +
-			    ANSWER_US,
+			    (c->answer_us ? c->answer_us : ANSWER_US),
 		.answer = c->answer, .arg = c->answer_arg,
 	};
 }

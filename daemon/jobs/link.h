@@ -71,6 +71,8 @@ struct link_command {
 	double arg_mm;			/* or in the unit of the field set */
 	int64_t take_us;		/* edmd does not take it later than
 					 * this; 0: the usual time */
+	int64_t answer_us;		/* it may need so long to answer; 0: the
+					 * usual time */
 	link_answer_fn answer;		/* it is called once, and never from
 					 * link_send() */
 	void *answer_arg;

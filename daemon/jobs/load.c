@@ -4,6 +4,7 @@
 
 #include "again.h"
 #include "compiler.h"
+#include "faults.h"
 #include "jobs_log.h"
 #include "offset.h"
 
@@ -36,15 +37,16 @@ static const char *answer_text(int code)
 		return "the axes moved since it was compiled";
 	case SHM_NOT_UP:
 		return "its drives are not up yet";
-	case SHM_LOCKED:
-		return "a guard or the PLC does not permit it";
+	case SHM_PLC_HOLDS:
+		return "the PLC holds";
 	case -ETIMEDOUT:
 	case SHM_LATE:
 		return "it did not take it in time";
 	case SHM_TAKEN:
 		return "no answer";
 	default:
-		return "it went away";
+		return code > SHM_SEEN && code < SHM_SEEN + CYCLE_NFAULTS ?
+		       fault_table[code - SHM_SEEN].what : "it went away";
 	}
 }
 
@@ -252,6 +254,7 @@ int load_request(struct jobs *j, const struct store_job *job,
 	memset(ret, 0, sizeof(*ret));
 	ret->config = j->config;
 	ret->name = job->name;
+	snprintf(ret->setting, sizeof(ret->setting), "%s", job->setting);
 	/* What the service itself has written. */
 	ret->dialect = job->measures ? "generic" : NULL;
 	for (int i = 0; i < INTERP_NAXES; i++)

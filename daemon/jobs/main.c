@@ -231,6 +231,7 @@ static int on_tick(sd_event_source *s, uint64_t usec, void *arg)
 	watch_store(j, now_us);
 	jobs_lcm_look(j->lcm, now_us);
 	checkpoint_tick(j, now_us);
+	interrupt_tick(j);
 	store_retain(j->store, (int64_t)j->config->keep_jobs,
 		     (int64_t)j->config->keep_days, jobs_utime());
 	status_tick(j, now_us);

@@ -309,7 +309,7 @@ bool offset_now(struct jobs *j, struct interp_origin *ret)
 void offset_place_mm(const struct interp_origin *o,
 		     const struct shm_snapshot *s, double ret_mm[INTERP_NAXES])
 {
-	const struct interp_turn t = interp_turn_of(o->turn_deg);
+	const struct interp_turn t = interp_turn_of(o->turn_deg, o->mirrored);
 
 	/* A program counts from its contacts. */
 	for (int i = 0; i < INTERP_NAXES; i++)

@@ -85,7 +85,7 @@ bool offset_has_c(const struct jobs *j)
 /* By what an electrode is turned where C stands. */
 static struct interp_turn turn_by_c(const struct jobs *j, double c_deg)
 {
-	return interp_turn_of(offset_has_c(j) ? c_deg : 0);
+	return interp_turn_of(offset_has_c(j) ? c_deg : 0, false);
 }
 
 /* The electrode in the holder, with C where it stands. */
@@ -109,7 +109,7 @@ static void origin_of(struct jobs *j, const struct touch *t,
 		      const double was[WORK_NROWS], double ret_mm[INTERP_NAXES])
 {
 	const uint32_t counts = t->form ? t->felt : t->here;
-	const struct interp_turn turn = interp_turn_of(was[WORK_TURN]);
+	const struct interp_turn turn = interp_turn_of(was[WORK_TURN], false);
 	double at[INTERP_NAXES], by[INTERP_NAXES];
 
 	touch_at_mm(t, s, at);
@@ -267,10 +267,10 @@ void offset_origin(struct jobs *j, int work,
 			const double row[WORK_NROWS], struct interp_origin *ret)
 {
 	const struct shm_snapshot *s = &j->link.snap;
-	const struct interp_turn t = interp_turn_of(row[WORK_TURN]);
+	const struct interp_turn t = interp_turn_of(row[WORK_TURN], false);
 
 	*ret = (struct interp_origin) {
-		.work = (uint32_t)work, .turn_deg = row[WORK_TURN],
+		.work = (uint16_t)work, .turn_deg = row[WORK_TURN],
 	};
 	by_electrode(j, s->pos[INTERP_C] * s->pulse_mm[INTERP_C], ret->mm);
 	for (int i = 0; i < INTERP_NAXES; i++)

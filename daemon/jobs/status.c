@@ -6,6 +6,7 @@
 #include "offset.h"
 #include "offset_put.h"
 
+#include "interp/setting_text.h"
 #include "interp/tech_table.h"
 
 #include <math.h>
@@ -65,8 +66,8 @@ static void fill_time(struct jobs_lcm_status *w, const struct jobs *j)
 	if (t.by)
 		w->eta_condition = j->eta.forecast.cond[t.cond];
 	w->eta_factor = t.factor;
-	w->progress = t.left_s >= 0 && w->job_s + t.left_s > 0 ?
-		      w->job_s / (w->job_s + t.left_s) :
+	w->progress = t.left_s >= 0 && j->eta.job_s + t.left_s > 0 ?
+		      j->eta.job_s / (j->eta.job_s + t.left_s) :
 		      s->length_mm > 0 ? s->far_mm / s->length_mm : 0;
 }
 
@@ -92,6 +93,17 @@ static void fill_job(struct jobs_lcm_status *w, const struct jobs *j)
 	w->queue_len = q->behind;
 }
 
+/* The job may have planes of its own. */
+static double height_mm(const struct jobs *j)
+{
+	struct interp_wire w = j->config->wire;
+	struct interp_setting set;
+	struct interp_diag none;
+
+	interp_setting_read(j->queue.job.setting, &set, &w, &none);
+	return config_wire_height_mm(j->config, &w);
+}
+
 static void fill_machine(struct jobs_lcm_status *w, const struct jobs *j)
 {
 	const struct machine_config *c = j->config;
@@ -111,7 +123,7 @@ static void fill_machine(struct jobs_lcm_status *w, const struct jobs *j)
 		w->feed_mm_s = s->feed_mm_s;
 	}
 	w->process = config_process_name(c);
-	w->height_mm = config_wire_height_mm(c);
+	w->height_mm = height_mm(j);
 	w->lean_deg = config_wire_lean_deg(c, w->pos_mm);
 	w->overruns = s->overruns;
 	w->wake_late_max_us = (uint32_t)(s->wake_late_max_ns / 1000);

@@ -44,11 +44,11 @@ static int insert(struct store *s, const struct store_new *j)
 {
 	return store_do(s, STORE_MUST, "INSERT INTO job(id, name, sha256, "
 			"lines, hold, submitted_us, tech_sha256, electrode, "
-			"measures) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)",
-			"sssiiisii", j->id, j->name, j->sha256,
+			"measures, setting) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, "
+			"?)", "sssiiisiis", j->id, j->name, j->sha256,
 			(int64_t)j->lines, (int64_t)j->hold, j->now_us,
 			j->tech_sha256, (int64_t)j->electrode,
-			(int64_t)j->measures);
+			(int64_t)j->measures, j->setting ? j->setting : "");
 }
 
 static int insert_text(struct store *s, const struct store_new *j, int64_t n)
@@ -153,7 +153,7 @@ static void column_copy(sqlite3_stmt *q, int i, char *to, size_t size)
 
 #define JOB_COLUMNS	"n, id, name, sha256, state, hold, loaded, " \
 			"begun_us, lines, tech_sha256, submitted_us, " \
-			"electrode, measures"
+			"electrode, measures, setting"
 
 static int job_get(sqlite3_stmt *q, int err, struct store_job *ret)
 {
@@ -172,6 +172,7 @@ static int job_get(sqlite3_stmt *q, int err, struct store_job *ret)
 	ret->submitted_us = sqlite3_column_int64(q, 10);
 	ret->electrode = (uint32_t)sqlite3_column_int64(q, 11);
 	ret->measures = (uint32_t)sqlite3_column_int64(q, 12);
+	column_copy(q, 13, ret->setting, sizeof(ret->setting));
 	sqlite3_finalize(q);
 	return 0;
 }

@@ -23,6 +23,8 @@
 #ifndef JOBS_STORE_H
 #define JOBS_STORE_H
 
+#include "interp/setting.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -54,6 +56,7 @@ struct store_job {
 	uint32_t lines;			/* of the text */
 	uint32_t electrode;		/* it begins with; 0: the one in the
 					 * holder */
+	char setting[INTERP_SETTING_MAX];	/* interp/setting.h */
 	uint32_t measures;		/* its text says what: touch.h; 0: it is
 					 * a job to cut */
 };
@@ -71,6 +74,7 @@ struct store_new {
 					 * there is none */
 	int64_t now_us;
 	uint32_t electrode, measures;	/* as in struct store_job */
+	const char *setting;		/* NULL: "" */
 };
 
 /* How a job ended. */
@@ -240,8 +244,8 @@ int store_set_number(struct store *s, const char *key, int64_t value);
  * STORE_QUEUE and STORE_HISTORY: an array of
  * the jobs behind job @id in that order, or the first ones if it is ""; at most
  * @rows (0: 200), and no more than fit one answer. So a client asks again with
- * the last job it got, until the array is empty. STORE_ALARMS: the last 20.
- * STORE_EVENTS: the last ones.
+ * the last job it got, until the array is empty. STORE_ALARMS and
+ * STORE_EVENTS: the last ones, each with its number n.
  * Return: NULL if there is no such job, no memory, or the store failed.
  */
 char *store_json(struct store *s, enum store_list what, const char *id,

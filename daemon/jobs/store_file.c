@@ -162,6 +162,9 @@ static const char *const steps[] = {
 	"CREATE TABLE tech("
 	" n INTEGER PRIMARY KEY AUTOINCREMENT, utime INTEGER NOT NULL,"
 	" by TEXT NOT NULL, what TEXT NOT NULL, text TEXT NOT NULL);",
+
+	/* What was set for a job: interp/setting.h. */
+	"ALTER TABLE job ADD COLUMN setting TEXT NOT NULL DEFAULT '';",
 };
 
 #define VERSION	((int)(sizeof(steps) / sizeof(steps[0])))

@@ -14,7 +14,6 @@
 
 #define LIST_MAX	200
 #define QUEUE_MAX	400		/* its rows are short */
-#define ALARMS_MAX	20
 
 /* Which electrodes cut it, and their wear before and after. */
 #define ELECTRODES_JSON	", 'electrodes', (SELECT json_group_array(json(e)) " \
@@ -35,8 +34,8 @@
 			"place_mm, 'length_mm', length_mm, 'depth_mm', " \
 			"depth_mm, 'job_s', job_s, 'jumps', jumps, " \
 			"'retracts', retracts, 'shorts', shorts, " \
-			"'forecast_s', forecast_s, 'tech_sha256', " \
-			"tech_sha256" ELECTRODES_JSON MORE ")"
+			"'forecast_s', forecast_s, 'setting', setting, " \
+			"'tech_sha256', tech_sha256" ELECTRODES_JSON MORE ")"
 
 /* Of a job that waits there may be thousands. */
 #define QUEUED_JSON	"json_object('n', n, 'job', id, 'name', name, " \
@@ -137,20 +136,21 @@ static sqlite3_stmt *list_query(struct store *s,
 				 "is", (int64_t)rows, id);
 	case STORE_EVENTS:
 		return store_ask(s, ret_err,
-				 "SELECT json_object('utime', utime, 'kind', "
-				 "kind, 'job', job, 'outcome', outcome, "
+				 "SELECT json_object('n', rowid, 'utime', "
+				 "utime, 'kind', kind, 'job', job, 'outcome', outcome, "
 				 "'place_mm', place_mm, 'text', text) FROM "
 				 "event ORDER BY utime DESC, rowid DESC "
 				 "LIMIT ?", "i", (int64_t)rows);
 	case STORE_ALARMS:
 		return store_ask(s, ret_err,
-				 "SELECT json_object('utime', utime, 'kind', "
-				 "kind, 'job', job, 'fault', outcome, "
-				 "'place_mm', place_mm, 'text', text) FROM "
+				 "SELECT json_object('n', rowid, 'utime', "
+				 "utime, 'kind', kind, 'job', job, 'fault', "
+				 "outcome, 'place_mm', place_mm, 'text', "
+				 "text) FROM "
 				 "event WHERE kind IN ('alarm', 'warning', "
 				 "'lost', 'back') ORDER BY utime DESC, rowid "
 				 "DESC LIMIT ?",
-				 "i", (int64_t)ALARMS_MAX);
+				 "i", (int64_t)rows);
 	case STORE_TRAIL:
 		return store_ask(s, ret_err, "SELECT trail FROM trail JOIN job "
 				 "USING(n) WHERE id=?", "s", id);

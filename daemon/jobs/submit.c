@@ -162,6 +162,7 @@ static void accept_text(struct jobs *j, struct upload *up,
 		.hold = up->hold, .now_us = jobs_utime(),
 		.begin_at = again_named(up->from_line, up->from_mm),
 		.electrode = up->electrode, .told = told,
+		.setting = up->setting,
 	};
 
 	hash_hex(hex, up->sha256);
@@ -200,12 +201,14 @@ static bool answer_known(struct jobs *j, const struct jobs_lcm_chunk *c)
 	if (store_find(j->store, c->job, &job) < 0)
 		return false;
 	hash_hex(hex, c->sha256);
-	if (strcmp(hex, job.sha256) == 0) {
+	if (strcmp(hex, job.sha256) == 0 &&
+	    strcmp(c->setting, job.setting) == 0) {
 		a.reason = "this job is here already";
 		a.body = body = store_json(j->store, STORE_SHOW, c->job, 0);
 	} else {
 		a.code = EX_DATAERR;
-		a.reason = "another text has this job id; draw a new id";
+		a.reason = "another text has this job id, or other "
+			   "settings; draw a new id";
 	}
 	jobs_lcm_ack(j->lcm, &a);
 	free(body);
@@ -267,6 +270,7 @@ static void check_begin(struct jobs *j, struct upload *up)
 	char hex[65];
 
 	memcpy(request.sha256, up->sha256, sizeof(request.sha256));
+	snprintf(request.setting, sizeof(request.setting), "%s", up->setting);
 	hash_hex(hex, up->sha256);
 	if (up->bytes > STORE_TEXT_INSIDE && !*store_why(j->store))
 		store_text_path(j->store, hex, request.text_file);

@@ -69,6 +69,10 @@ bool upload_check(const struct jobs_lcm_chunk *c, struct upload_answer *a)
 	else if (c->electrode < 0 || c->electrode > 9999)
 		refuse(a, EX_DATAERR, "no such electrode; 1 to 9999, or 0: the "
 		       "one in the holder");
+	else if (strlen(c->setting) >= INTERP_SETTING_MAX ||
+		 !plain_is(c->setting))
+		refuse(a, EX_DATAERR, "these settings cannot be taken; words "
+		       "as taper=3, up to 191 bytes");
 	else if (!place_is_inside(c))
 		refuse(a, EX_PROTOCOL, "chunk outside its job; at most "
 		       "32768 bytes, inside the size given");
@@ -202,6 +206,7 @@ static struct upload *upload_begin(struct uploads *u,
 	up->from_line = (uint32_t)c->from_line;
 	up->from_mm = c->from_mm;
 	up->electrode = (uint32_t)c->electrode;
+	snprintf(up->setting, sizeof(up->setting), "%s", c->setting);
 	/* An operator looks at the way in before it moves. */
 	up->hold = c->hold || up->from_line > 0 || up->from_mm > 0;
 	up->seq_min = up->seq_max = c->seq;
@@ -215,6 +220,7 @@ static bool upload_agrees(const struct upload *up,
 	       up->chunks == (uint32_t)c->chunks &&
 	       up->from_line == (uint32_t)c->from_line &&
 	       up->from_mm == c->from_mm &&
+	       strcmp(up->setting, c->setting) == 0 &&
 	       memcmp(up->sha256, c->sha256, sizeof(up->sha256)) == 0;
 }
 

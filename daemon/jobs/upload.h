@@ -15,6 +15,8 @@
 
 #include "lcm.h"
 
+#include "interp/setting.h"
+
 #define UPLOAD_SLOTS		8
 #define UPLOAD_BYTES_MAX	(64 << 20)
 #define UPLOAD_CHUNKS_MAX	65536
@@ -38,6 +40,7 @@ struct upload {
 	uint32_t from_line;		/* where it begins, as in edm.lcm */
 	double from_mm;
 	uint32_t electrode;
+	char setting[INTERP_SETTING_MAX];
 	uint8_t *seen;			/* bit per chunk */
 	char *text;
 	int64_t last_us;		/* of the last new chunk, monotonic */

@@ -82,6 +82,30 @@ void verbs_generator(struct jobs *j, const struct verb *v,
  *  of them.  Return: -1 if it was refused. */
 int verbs_generator_field(struct jobs *j, const struct jobs_lcm_command *c);
 
+/* -- verbs_drive.c -- */
+
+/** verbs_drives() - the verb "drives": what is known of each. */
+void verbs_drives(struct jobs *j, const struct verb *v,
+		  const struct jobs_lcm_command *c);
+
+/** verbs_drive_arg() - SHM_OBJECT() of the axis and the object that the text of
+ *  @c names, "X 6064" or, to store, "X".  Return: false if it was refused. */
+bool verbs_drive_arg(struct jobs *j, const struct verb *v,
+		     const struct jobs_lcm_command *c, uint32_t *ret);
+
+/** verbs_drive_end() - answer @c with what became of @arg. */
+void verbs_drive_end(struct jobs *j, const struct verb *v,
+		     const struct jobs_lcm_command *c, uint32_t arg);
+
+/* The object that stores what is set, and what is written into it. */
+#define VERBS_STORE_INDEX	0x1010
+#define VERBS_STORE_SUB		3	/* the parameters of the application */
+#define VERBS_STORE_WORD	0x65766173	/* "save" */
+
+/** verbs_axis() - the text must begin with the letter of an axis that the
+ *  machine has; @n: how long it is.  Return: -1 if it was refused. */
+int verbs_axis(struct jobs *j, const struct jobs_lcm_command *c, size_t n);
+
 /* -- verbs_queue.c: functions of rows -- */
 
 void verbs_remove(struct jobs *j, const struct verb *v,

@@ -8,6 +8,7 @@
 #include "act.h"
 #include "again.h"
 #include "electrode.h"
+#include "faults.h"
 #include "interrupt.h"
 #include "keyring.h"
 #include "mdi.h"
@@ -33,6 +34,7 @@
 #define STEP_MAX	100
 #define OVERRIDE_MAX	2.0
 #define SIGN_US		100000		/* a sign of a press may not be older */
+#define DRIVE_US	60000000	/* a drive may need so long to answer */
 
 /* A command on its way to edmd. */
 struct asked {
@@ -97,14 +99,11 @@ static const char *refusal(int code)
 				   "yet; start cuts on",
 		[SHM_ELSEWHERE] = "the axes are not where the program begins; "
 				  "submit it again",
-		[SHM_LOCKED] = "nothing may move now: the door is open, the "
-			       "gap cannot be read, or the PLC is not there, "
-			       "holds, or has no permit",
+		[SHM_PLC_HOLDS] = "the PLC holds: nothing may move until it "
+				  "lets go",
 		[SHM_NO_POWER] = "an axis cannot have power: safe torque "
 				 "off, its supply or its enable input; "
 				 "repair that, then ask again",
-		[SHM_NOT_ASKED] = "that is not what the machine asks for; "
-				  "status says what it does",
 		[SHM_STILL_THERE] = "what caused the fault is still there; "
 				    "edmctl alarms says what clears it",
 	};
@@ -158,13 +157,34 @@ static const char *state_words(uint32_t state)
 static void verb_stand(struct jobs *j, const struct verb *v,
 		       const struct jobs_lcm_command *c);
 
-/* A start, and nobody has confirmed. */
-static void refuse_asks(struct jobs *j, const struct jobs_lcm_command *c)
+/* A start, and nobody has confirmed; or something else was. */
+static void refuse_asks(struct jobs *j, const struct jobs_lcm_command *c,
+			bool not_asked)
 {
+	const char *asks = asks_text(j);
 	char reason[ASKS_TEXT_MAX + 40];
 
-	snprintf(reason, sizeof(reason), "not before this: %s", asks_text(j));
+	snprintf(reason, sizeof(reason), "%s: %s", not_asked ?
+		 "that is not what the machine asks for" : "not before this",
+		 *asks ? asks : "it asks for nothing");
 	verbs_answer(j, c, REFUSED, reason);
+}
+
+/* What a guard sees keeps everything from beginning. */
+static void refuse_seen(struct jobs *j, const struct jobs_lcm_command *c,
+			int fault)
+{
+	char reason[240];
+
+	snprintf(reason, sizeof(reason), "nothing may move now: %s; edmctl "
+		 "faults %s tells why, and what clears it",
+		 fault_table[fault].what, fault_table[fault].name);
+	verbs_answer(j, c, REFUSED, reason);
+}
+
+static bool is_of_drive(const struct verb *v)
+{
+	return v->machine == SHM_OBJECT_GET || v->machine == SHM_OBJECT_SET;
 }
 
 static void on_answer(void *arg, int code)
@@ -172,6 +192,7 @@ static void on_answer(void *arg, int code)
 	struct asked *a = arg;
 	struct jobs *j = a->jobs;
 	const struct jobs_lcm_command c = reply_asker_command(&a->by);
+	const char *done = begun_is(a->verb) ? "begun" : "done";
 	char reason[160];
 
 	if (a->verb->machine == SHM_DO_START ||
@@ -182,9 +203,11 @@ static void on_answer(void *arg, int code)
 	if (code == SHM_DONE && a->verb->machine == SHM_DO_CONFIRM)
 		asks_confirmed(j);
 	if (code == SHM_DONE && a->verb->machine == SHM_DO_PLACE)
-		interrupt_placed(j, (int)a->arg, a->arg_mm);
-	if (code == SHM_DONE)
-		verbs_answer(j, &c, 0, begun_is(a->verb) ? "begun" : "done");
+		done = interrupt_placed(j, (int)a->arg, a->arg_mm);
+	if (code == SHM_DONE && is_of_drive(a->verb))
+		verbs_drive_end(j, a->verb, &c, a->arg);
+	else if (code == SHM_DONE)
+		verbs_answer(j, &c, 0, done);
 	else if (gone(code))
 		verbs_answer(j, &c, EX_UNAVAILABLE, gone(code));
 	else if (code == -ESHUTDOWN)
@@ -206,8 +229,10 @@ static void on_answer(void *arg, int code)
 		       "open_v < ignition_v must hold" :
 		       "edmd refused the value; it must be finite and in "
 		       "range");
-	else if (code == SHM_ASKS)
-		refuse_asks(j, &c);
+	else if (code == SHM_ASKS || code == SHM_NOT_ASKED)
+		refuse_asks(j, &c, code == SHM_NOT_ASKED);
+	else if (code > SHM_SEEN && code < SHM_SEEN + CYCLE_NFAULTS)
+		refuse_seen(j, &c, code - SHM_SEEN);
 	else if (refusal(code))
 		verbs_answer(j, &c, REFUSED, refusal(code));
 	else {
@@ -292,6 +317,7 @@ static void ask_machine(struct jobs *j, const struct verb *v,
 	struct link_command m = {
 		.id = c->act, .verb = v->machine, .arg = arg, .arg_mm = c->arg,
 		.take_us = v->kind == VERB_SIGNS ? SIGN_US : 0,
+		.answer_us = is_of_drive(v) ? DRIVE_US : 0,
 		.answer = on_answer, .answer_arg = a,
 	};
 	char reason[240];
@@ -432,6 +458,40 @@ static void verb_generator_set(struct jobs *j, const struct verb *v,
 		ask_machine(j, v, c, (uint32_t)field);
 }
 
+/* The same, by one who may vanish. */
+static void verb_generator_try(struct jobs *j, const struct verb *v,
+			       const struct jobs_lcm_command *c)
+{
+	const int field = verbs_generator_field(j, c);
+
+	if (field >= 0)
+		ask_machine(j, v, c, (uint32_t)field | VERB_TRY_LEASED);
+}
+
+static void verb_drive(struct jobs *j, const struct verb *v,
+		       const struct jobs_lcm_command *c)
+{
+	struct jobs_lcm_command to = *c;
+	uint32_t arg;
+
+	if (!verbs_drive_arg(j, v, c, &arg))
+		return;
+	if (v->machine == SHM_OBJECT_GET)
+		to.arg = 0;
+	else if (to.arg < 0)
+		to.arg += 4294967296.0;
+	ask_machine(j, v, &to, arg);
+}
+
+static void verb_drive_store(struct jobs *j, const struct verb *v,
+			     const struct jobs_lcm_command *c)
+{
+	struct jobs_lcm_command to = *c;
+
+	to.arg = VERBS_STORE_WORD;
+	verb_drive(j, v, &to);
+}
+
 static void verb_retract(struct jobs *j, const struct verb *v,
 			 const struct jobs_lcm_command *c)
 {
@@ -473,9 +533,7 @@ static void verb_override(struct jobs *j, const struct verb *v,
 			     "no such override; 0 to 200 percent");
 }
 
-/* The text must be the letter of an axis that the machine has; @n: its length.
- * Return: -1 if it was refused. */
-static int axis_of(struct jobs *j, const struct jobs_lcm_command *c, size_t n)
+int verbs_axis(struct jobs *j, const struct jobs_lcm_command *c, size_t n)
 {
 	const char *at = n == 1 ? strchr(INTERP_AXIS_LETTERS,
 					 toupper((unsigned char)c->text[0])) :
@@ -502,7 +560,7 @@ static void verb_jog(struct jobs *j, const struct verb *v,
 			     "degrees, + or -");
 		return;
 	}
-	axis = axis_of(j, c, strlen(c->text));
+	axis = verbs_axis(j, c, strlen(c->text));
 	if (axis >= 0)
 		ask_machine(j, v, c, (uint32_t)axis);
 }
@@ -528,7 +586,7 @@ static void verb_jog_on(struct jobs *j, const struct verb *v,
 			     "press before it had, and begin if it begins");
 		return;
 	}
-	axis = axis_of(j, c, n);
+	axis = verbs_axis(j, c, n);
 	if (axis >= 0 && jobs_now_us() - c->signed_us > SIGN_US)
 		verbs_answer(j, c, EX_UNAVAILABLE, "the message of this press "
 			     "came too late; press again");
@@ -547,7 +605,7 @@ static bool is_homed_by(const struct jobs *j, int axis)
 static void verb_home(struct jobs *j, const struct verb *v,
 		      const struct jobs_lcm_command *c)
 {
-	int axis = c->text[0] ? axis_of(j, c, strlen(c->text)) :
+	int axis = c->text[0] ? verbs_axis(j, c, strlen(c->text)) :
 				INTERP_NAXES;
 	bool any = false;
 
@@ -572,7 +630,7 @@ static void verb_place(struct jobs *j, const struct verb *v,
 	const size_t n = strcspn(c->text, " ");
 	const bool seen = strcmp(c->text + n, " as-seen") == 0;
 	struct jobs_lcm_command at = *c;
-	const int axis = axis_of(j, c, n);
+	const int axis = verbs_axis(j, c, n);
 	const char *why;
 
 	if (axis < 0)
@@ -729,6 +787,17 @@ static const struct verb verbs[] = {
 	{ "generator", ROLE_VIEWER, VERB_ASKS, verbs_generator, VERB_OWN, "" },
 	{ "generator-set", ROLE_OPERATOR, VERB_ACTS, verb_generator_set,
 	  SHM_DO_TRY, "it idle, without sparks: no job loaded, no fault" },
+	{ "generator-try", ROLE_OPERATOR, VERB_ACTS, verb_generator_try,
+	  SHM_DO_TRY, "it idle, without sparks: no job loaded, no fault" },
+	{ "drives", ROLE_VIEWER, VERB_ASKS, verbs_drives, VERB_OWN, "" },
+	{ "drive-get", ROLE_VIEWER, VERB_ASKS, verb_drive, SHM_OBJECT_GET,
+	  "no other object of a drive under way; ask again" },
+	{ "drive-set", ROLE_SERVICE, VERB_ACTS, verb_drive, SHM_OBJECT_SET,
+	  "no job loaded, nothing that moves, and no other object of a drive "
+	  "under way" },
+	{ "drive-store", ROLE_SERVICE, VERB_ACTS, verb_drive_store,
+	  SHM_OBJECT_SET, "no job loaded, nothing that moves, and no other "
+	  "object of a drive under way" },
 	{ "remove", ROLE_OPERATOR, VERB_ENDS, verbs_remove, VERB_OWN, "" },
 	{ "move", ROLE_OPERATOR, VERB_ACTS, verbs_move, VERB_OWN, "" },
 	{ "text", ROLE_VIEWER, VERB_ASKS, verbs_text, VERB_OWN, "" },

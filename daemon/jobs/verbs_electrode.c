@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* verbs_electrode.c - the operator's table of electrodes */
 #include "electrode.h"
+#include "offset_put.h"
 #include "verb.h"
 
 #include "plain.h"
@@ -25,6 +26,7 @@ struct key {
 	double min, max;
 	double unit;			/* of the value, in that of the
 					 * member */
+	const char *unit_name;
 };
 
 #define E(member)	offsetof(struct store_electrode, member), \
@@ -32,19 +34,19 @@ struct key {
 
 /* clang-format off */
 static const struct key keys[] = {
-	{ "name",      WORD,   E(name),         0, 0, 0 },
-	{ "material",  WORD,   E(material),     0, 0, 0 },
-	{ "undersize", NUMBER, E(undersize_mm), 0, 100, 1 },
-	{ "length",    NUMBER, E(length_mm),    0, 2000, 1 },
-	{ "wear",      NUMBER, E(wear_mm),      -10, 2000, 1 },
-	{ "x",         NUMBER, E(x_mm),         -100, 100, 1 },
-	{ "y",         NUMBER, E(y_mm),         -100, 100, 1 },
-	{ "c",         NUMBER, E(c_deg),        -360, 360, 1 },
-	{ "life",      NUMBER, E(life_mm),      0, 2000, 1 },
-	{ "minutes",   NUMBER, E(life_s),       0, 1e6, 60 },
-	{ "sparked",   NUMBER, E(spark_s),      0, 1e6, 60 },
-	{ "state",     STATE,  E(state),        0, 0, 0 },
-	{ "note",      WORD,   E(note),         0, 0, 0 },
+	{ "name",      WORD,   E(name),         0, 0, 0, "" },
+	{ "material",  WORD,   E(material),     0, 0, 0, "" },
+	{ "undersize", NUMBER, E(undersize_mm), 0, 100, 1, "mm" },
+	{ "length",    NUMBER, E(length_mm),    0, 2000, 1, "mm" },
+	{ "wear",      NUMBER, E(wear_mm),      -10, 2000, 1, "mm" },
+	{ "x",         NUMBER, E(x_mm),         -100, 100, 1, "mm" },
+	{ "y",         NUMBER, E(y_mm),         -100, 100, 1, "mm" },
+	{ "c",         NUMBER, E(c_deg),        -360, 360, 1, "degrees" },
+	{ "life",      NUMBER, E(life_mm),      0, 2000, 1, "mm" },
+	{ "minutes",   NUMBER, E(life_s),       0, 1e6, 60, "minutes" },
+	{ "sparked",   NUMBER, E(spark_s),      0, 1e6, 60, "minutes" },
+	{ "state",     STATE,  E(state),        0, 0, 0, "" },
+	{ "note",      WORD,   E(note),         0, 0, 0, "" },
 };
 /* clang-format on */
 
@@ -96,7 +98,7 @@ static int take_number(const struct key *k, double *to, const char *value,
 	}
 	snprintf(why, 400, "%s=%.40s: not a number that it can have; %g to %g "
 		 "%s", k->name, value, k->min, k->max,
-		 k->unit == 60 ? "minutes" : "mm");
+		 k->unit_name);
 	return -EINVAL;
 }
 
@@ -185,6 +187,17 @@ bool electrode_find_named(struct jobs *j, const struct jobs_lcm_command *c,
 	return false;
 }
 
+/* Has it a turn that C cannot give it? */
+static bool is_turned(struct jobs *j, const struct jobs_lcm_command *c,
+		      const struct store_electrode *e)
+{
+	if (e->c_deg == 0 || offset_has_c(j))
+		return false;
+	verbs_answer(j, c, EX_DATAERR, "c: this machine has no C that turns "
+		     "the electrode; c=0, or a work system that is turned");
+	return true;
+}
+
 /* While a job has it, its numbers are those of the job. */
 static bool is_busy(struct jobs *j, const struct jobs_lcm_command *c)
 {
@@ -229,7 +242,7 @@ void electrode_add(struct jobs *j, const struct verb *v,
 			     "remove one");
 	else if (take_all(&e, c->text, why) < 0)
 		verbs_answer(j, c, EX_DATAERR, why);
-	else
+	else if (!is_turned(j, c, &e))
 		put(j, c, &e);
 }
 
@@ -244,7 +257,7 @@ void electrode_set(struct jobs *j, const struct verb *v,
 		return;
 	if (take_all(&e, c->text, why) < 0)
 		verbs_answer(j, c, EX_DATAERR, why);
-	else if (!is_busy(j, c))
+	else if (!is_turned(j, c, &e) && !is_busy(j, c))
 		put(j, c, &e);
 }
 

@@ -14,6 +14,7 @@
 #include <string.h>
 #include <sysexits.h>
 
+#define ALARMS		20		/* if nobody says how many */
 #define MOVE_ALL	2.0		/* - or +: before or behind all */
 
 /* On a disk that takes nothing a job is removed from memory only. */
@@ -221,8 +222,12 @@ void verbs_trail(struct jobs *j, const struct verb *v,
 void verbs_alarms(struct jobs *j, const struct verb *v,
 		  const struct jobs_lcm_command *c)
 {
+	struct jobs_lcm_command some = *c;
+
 	(void)v;
-	answer_list(j, c, STORE_ALARMS);
+	if (!(some.arg > 0))
+		some.arg = ALARMS;
+	answer_list(j, &some, STORE_ALARMS);
 }
 
 void verbs_events(struct jobs *j, const struct verb *v,

@@ -18,7 +18,7 @@ static enum cycle_answer may_begin(const struct cycle *c)
 		return ANSWER_NOT_UP;
 	if (c->axes.powerless)
 		return ANSWER_NO_POWER;
-	return guard_forbids(c) ? ANSWER_LOCKED : ANSWER_DONE;
+	return guard_forbids(c);
 }
 
 /* The machine works in order, and is not about to go to a fault or to end the
@@ -225,8 +225,9 @@ static enum cycle_answer do_try(struct cycle *c, const struct cycle_command *m)
 {
 	if (c->loaded || c->state != STATE_IDLE)
 		return ANSWER_WRONG_STATE;
-	return asking_try(c, m->arg, m->arg_mm) ? ANSWER_DONE :
-						  ANSWER_BAD_ARGUMENT;
+	return asking_try(c, VERB_TRY_FIELD(m->arg), m->arg_mm,
+			  m->arg & VERB_TRY_LEASED) ?
+	       ANSWER_DONE : ANSWER_BAD_ARGUMENT;
 }
 
 static enum cycle_answer do_manual(struct cycle *c,
@@ -294,7 +295,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->escape = (struct escape) { .nlegs = 0 };
 	if (!conditions_begin(c))
 		return ANSWER_BAD_ARGUMENT;
-	asking_try(c, INTERP_NGENERATOR, (double)NAN);
+	asking_try(c, INTERP_NGENERATOR, (double)NAN, false);
 	c->out.path++;
 	c->loaded = true;
 	stand_end(c);

@@ -263,6 +263,7 @@ static void give(struct cycle *c, struct io_outputs *out)
 	/* M5 takes effect in its own cycle, also when a way back meets it. */
 	c->out.power = may_spark(c);
 	c->out.sense = c->state == STATE_PROBE;
+	c->out.home = manual_drive_homes(c);
 	if (c->loaded) {
 		const struct interp_cond *cond =
 			&c->cursor.p.conds[c->cursor.seg.cond];

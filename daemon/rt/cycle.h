@@ -121,14 +121,16 @@ enum cycle_answer {
 	ANSWER_ELSEWHERE,		/* the program does not begin where the
 					 * machine stands */
 	ANSWER_NOT_UP,			/* the drives are not up yet */
-	ANSWER_LOCKED,			/* a guard or the PLC forbids it */
+	ANSWER_PLC_HOLDS,		/* nothing may begin */
 	ANSWER_STILL_THERE,		/* reset: the cause is still there */
 	ANSWER_NO_POWER,		/* an axis cannot have power now */
 	ANSWER_ASKS,			/* start: what the stand asks for was
 					 * not confirmed */
 	ANSWER_NOT_ASKED,		/* confirm: the stand does not ask for
 					 * that */
-	CYCLE_NANSWERS
+	CYCLE_NANSWERS,
+	/* And a fault: a guard sees it, so nothing may begin. */
+	ANSWER_SEEN = 100
 };
 
 /* Sums of one job, for status and report. */
@@ -168,6 +170,9 @@ struct cycle_ahead {
 /* A jump: up, then down to just above the cut. */
 struct cycle_lift {
 	double from_mm, to_mm;		/* the places where it began and ends */
+	double height_mm;
+	bool waits;			/* until it stands, and may leave the
+					 * path */
 	bool up;			/* on its way up */
 	bool leaving;			/* the time of a timed part is over: it
 					 * does not come back */

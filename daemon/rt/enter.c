@@ -8,29 +8,37 @@
 
 #include <math.h>
 
+void cycle_lift(struct cycle *c)
+{
+	struct cycle_lift *l = &c->lift;
+
+	l->waits = c->mover.v_mm_s != 0;
+	if (!l->waits && !escape_is_out(&c->escape))
+		escape_begin(c);
+	l->from_mm = place_mm(c);
+	l->to_mm = fmax(place_outer_mm(c), l->from_mm - l->height_mm);
+}
+
 static void lift(struct cycle *c)
 {
-	const double height_mm = flush_begin(c);
-
+	c->lift.height_mm = flush_begin(c);
 	c->lift.up = true;
 	/* Beside the path the way out goes on; the time waits. */
 	c->lift.leaving = timed_is_up(c) && !escape_is_out(&c->escape);
+	c->lift.waits = false;
 	if (c->lift.leaving) {
 		c->lift.to_mm = c->timed.from_mm;
 		return;
 	}
 	c->totals.jumps++;
-	if (!escape_is_out(&c->escape))
-		escape_begin(c);
-	c->lift.from_mm = place_mm(c);
-	c->lift.to_mm = fmax(place_outer_mm(c), c->lift.from_mm - height_mm);
+	cycle_lift(c);
 }
 
 /* It is held beside the path: it goes back as a jump does. */
 static void come_back(struct cycle *c)
 {
 	c->lift.up = false;
-	c->lift.leaving = false;
+	c->lift.leaving = c->lift.waits = false;
 	c->lift.from_mm = interp_cursor_place_mm(&c->cursor);
 	c->lift.to_mm = fmax(c->lift.from_mm - c->jump.short_of_mm,
 			     place_mm(c));

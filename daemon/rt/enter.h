@@ -49,6 +49,12 @@ static inline void cycle_set_off(struct cycle *c)
 /** cycle_start() - the same, for axes_want(). */
 void cycle_start(struct cycle *c, double unused);
 
+/**
+ * cycle_lift() - a jump begins.  Beside the path the axes may brake less, so
+ * what still moves leaves the path in a later cycle, when it stands.
+ */
+void cycle_lift(struct cycle *c);
+
 /** cycle_reset() - leave a fault: to hold, or to idle if there is no job. */
 void cycle_reset(struct cycle *c);
 

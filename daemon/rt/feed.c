@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* feed.c - the feed laws, a table with one for each state; jumps and holds */
 #include "path/ahead.h"
+#include "enter.h"
 #include "feed.h"
 #include "path/hole.h"
 #include "path/laws.h"
@@ -71,7 +72,7 @@ static double escape_to(struct cycle *c, const struct mover_limits *l,
 static double jump(struct cycle *c)
 {
 	const struct cycle_jump_config *j = &c->jump;
-	const struct mover_limits beside = escape_limits(c);
+	struct mover_limits beside;
 	struct ahead_move w = {
 		.stops_at_nodes = c->config.stop_at_nodes,
 		.l = {
@@ -84,6 +85,9 @@ static double jump(struct cycle *c)
 		},
 	};
 
+	if (c->lift.waits)
+		cycle_lift(c);
+	beside = escape_limits(c);
 	if (escape_is_out(&c->escape))
 		return escape_to(c, &beside, c->lift.to_mm);
 	return go_to(c, &w, c->lift.to_mm);
@@ -154,7 +158,7 @@ static bool there(const struct cycle *c, double to_mm)
 /* A jump goes up, and then back until it is just before the cut. */
 static bool jump_done(struct cycle *c)
 {
-	if (!there(c, c->lift.to_mm))
+	if (c->lift.waits || !there(c, c->lift.to_mm))
 		return false;
 	if (!c->lift.up || c->lift.leaving)
 		return true;

@@ -60,10 +60,14 @@ void guard_look(struct cycle *c, const struct io_inputs *in)
 	c->busy = in->busy;
 }
 
-bool guard_forbids(const struct cycle *c)
+enum cycle_answer guard_forbids(const struct cycle *c)
 {
-	return c->fault.seen[FAULT_ALWAYS] || c->fault.seen[FAULT_IN_MOTION] ||
-	       (c->plc.present && c->plc.hold);
+	const uint64_t seen = c->fault.seen[FAULT_ALWAYS] |
+			      c->fault.seen[FAULT_IN_MOTION];
+
+	if (seen)
+		return ANSWER_SEEN + (uint32_t)__builtin_ctzll(seen);
+	return c->plc.present && c->plc.hold ? ANSWER_PLC_HOLDS : ANSWER_DONE;
 }
 
 /*

@@ -24,8 +24,9 @@ static inline void guard_judge(struct cycle *c)
 			    state_duty[c->state].power);
 }
 
-/** guard_forbids() - do the guards forbid that anything begins to move now? */
-bool guard_forbids(const struct cycle *c);
+/** guard_forbids() - may anything begin to move now?  Return: ANSWER_DONE, or
+ *  what forbids it. */
+enum cycle_answer guard_forbids(const struct cycle *c);
 
 /**
  * guard_met() - while positioning, did the electrode meet something that was

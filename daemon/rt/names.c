@@ -23,7 +23,7 @@ static const char *const answers[CYCLE_NANSWERS] = {
 	[ANSWER_NOT_PASSED]	= "the path there was not passed before",
 	[ANSWER_ELSEWHERE]	= "the program begins elsewhere",
 	[ANSWER_NOT_UP]		= "the drives are not up yet",
-	[ANSWER_LOCKED]		= "a guard or the PLC does not permit it",
+	[ANSWER_PLC_HOLDS]	= "the PLC holds",
 	[ANSWER_STILL_THERE]	= "what caused the fault is still there",
 	[ANSWER_NO_POWER]	= "an axis cannot have power",
 	[ANSWER_ASKS]		= "it asks for something that nobody confirmed",
@@ -37,5 +37,7 @@ const char *cycle_outcome_name(enum cycle_outcome o)
 
 const char *cycle_answer_text(enum cycle_answer a)
 {
+	if (a >= ANSWER_SEEN && a < ANSWER_SEEN + CYCLE_NFAULTS)
+		return fault_table[a - ANSWER_SEEN].what;
 	return a < CYCLE_NANSWERS ? answers[a] : "?";
 }

@@ -21,13 +21,8 @@ static uint32_t last_done(const struct cycle *c)
 
 static void restore_aux(struct cycle *c, uint32_t what)
 {
-	if (what == INTERP_AUX_POWER_OFF) {
-		c->job.power_off = true;
-	} else if (what == INTERP_AUX_POWER_POSITIVE ||
-		   what == INTERP_AUX_POWER_NEGATIVE) {
-		c->job.power_off = false;
-		conditions_say(c, what == INTERP_AUX_POWER_NEGATIVE);
-	}
+	if (what <= INTERP_AUX_POWER_NEGATIVE)
+		c->job.power_off = what == INTERP_AUX_POWER_OFF;
 }
 
 /* Set what the program has done on its way there. */
@@ -51,7 +46,7 @@ static void restore_actions(struct cycle *c)
 			mcode_over(c, i);
 		walk_pass_change(c, s);
 		if (s->kind == INTERP_AUX)
-			restore_aux(c, s->arg);
+			restore_aux(c, INTERP_AUX_OF(s->arg));
 	}
 }
 

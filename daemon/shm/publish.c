@@ -48,6 +48,16 @@ static struct stamped ring_of_sets(const struct shm_status *s)
 	};
 }
 
+static struct stamped ring_of_drives(const struct shm_status *s)
+{
+	return (struct stamped) {
+		.slots = (void *)(uintptr_t)s->drives,
+		.next = (uint64_t *)(uintptr_t)&s->drives_next,
+		.count = 2,
+		.slot_bytes = sizeof(s->drives[0]),
+	};
+}
+
 static struct stamped ring_of_done(const struct shm_status *s)
 {
 	return (struct stamped) {
@@ -154,6 +164,20 @@ bool shm_sets(const struct shm_status *s, struct shm_sets *ret)
 	struct stamped r = ring_of_sets(s);
 
 	return stamped_last(&r, 1, ret);
+}
+
+void shm_drives_put(struct shm_status *s, const struct cia402_told *told)
+{
+	struct stamped r = ring_of_drives(s);
+
+	stamped_put(&r, told);
+}
+
+bool shm_drives(const struct shm_status *s, struct cia402_told *ret)
+{
+	struct stamped r = ring_of_drives(s);
+
+	return stamped_last(&r, LAST_TRIES, ret);
 }
 
 bool shm_snapshot(const struct shm_status *s, struct shm_snapshot *ret)

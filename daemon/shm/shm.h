@@ -40,6 +40,7 @@
 #ifndef EDM_SHM_H
 #define EDM_SHM_H
 
+#include "cia402.h"
 #include "states.h"
 #include "verbs.h"
 
@@ -50,10 +51,10 @@
 #include <ck_ring.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	17
+#define SHM_LAYOUT	19
 #define SHM_NAXES	8		/* X Y Z A B C U V */
-#define SHM_NGENERATOR	6		/* values of a generator */
-#define SHM_NTOLD	15		/* what it tells: PROCESS_NTOLD */
+#define SHM_NGENERATOR	7		/* values of a generator */
+#define SHM_NTOLD	16		/* what it tells: PROCESS_NTOLD */
 #define SHM_NAME_MAX	32
 #define SHM_PATH_MAX	96
 
@@ -303,6 +304,11 @@ struct shm_snap {
 	struct shm_snapshot record;
 };
 
+struct shm_drives {
+	uint64_t stamp;
+	struct cia402_told record;
+};
+
 struct shm_status {
 	struct shm_head head;
 	uint64_t born;			/* drawn when the object was made */
@@ -315,7 +321,9 @@ struct shm_status {
 	uint64_t sets_next;
 	uint64_t done_next;
 	uint64_t ended_next;
+	uint64_t drives_next;
 	struct shm_sets_slot sets[2];
+	struct shm_drives drives[2];
 	struct shm_done_slot done[SHM_DONE_SLOTS];
 	struct shm_ended_slot ended[SHM_ENDED_SLOTS];
 	struct shm_trace_slot trace[SHM_TRACE_SLOTS];
@@ -331,13 +339,19 @@ enum shm_verb {
 					 * held one is stopped first */
 	SHM_AHEAD,			/* copy program n: it is to be loaded
 					 * later; when none is */
+	SHM_OBJECT_GET,			/* arg: SHM_OBJECT() of a drive; what
+					 * comes of it is in shm_drives() */
+	SHM_OBJECT_SET,			/* ... to arg_mm; when idle */
 };
+
+#define SHM_OBJECT(axis, index, sub) \
+	((uint32_t)(axis) << 24 | (uint32_t)(index) << 8 | (uint32_t)(sub))
 
 /* Mirrors enum cycle_answer: the code of an SHM_EV_ANSWER. */
 enum shm_answer {
 	SHM_DONE, SHM_NO_PROGRAM, SHM_WRONG_STATE, SHM_BAD_ARGUMENT,
 	SHM_NOT_HOMED, SHM_AT_LIMIT, SHM_BEYOND, SHM_NO_NODE, SHM_NOT_PASSED,
-	SHM_ELSEWHERE, SHM_NOT_UP, SHM_LOCKED, SHM_STILL_THERE,
+	SHM_ELSEWHERE, SHM_NOT_UP, SHM_PLC_HOLDS, SHM_STILL_THERE,
 	SHM_NO_POWER,
 	SHM_ASKS,
 	SHM_NOT_ASKED,
@@ -347,6 +361,8 @@ enum shm_answer {
 					 * of the machine tells whether it is
 					 * done */
 	SHM_TAKEN = -1,			/* in struct shm_done: no answer yet */
+	SHM_SEEN = 100,			/* and enum cycle_fault: a guard sees
+					 * it */
 };
 
 /* Mirrors enum cycle_outcome. */
@@ -405,6 +421,12 @@ void shm_event(struct shm_status *s, const struct shm_event *e);
 
 /** shm_sets_put() - all that is set now. RT-safe; one writer. */
 void shm_sets_put(struct shm_status *s, const struct shm_sets *sets);
+
+/** shm_drives_put() - what is known of the drives now. RT-safe; one writer. */
+void shm_drives_put(struct shm_status *s, const struct cia402_told *told);
+
+/** shm_drives() - what was put last; false: nothing. Any thread. */
+bool shm_drives(const struct shm_status *s, struct cia402_told *ret);
 
 /** shm_sets() - what was put last; false: nothing yet. Any thread. */
 bool shm_sets(const struct shm_status *s, struct shm_sets *ret);

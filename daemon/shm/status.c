@@ -62,6 +62,7 @@ static void status_adopt(struct shm_status *s)
 {
 	memset(s->latency_us, 0, sizeof(s->latency_us));
 	memset(s->took, 0, sizeof(s->took));
+	s->drives_next = 0;
 }
 
 /* If the object cannot be completed, it is removed. */

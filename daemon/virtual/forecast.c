@@ -10,19 +10,28 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define LOOK_CYCLES	4096		/* between two looks at `ends` */
 #define STEP_S		0.01		/* of a part, at first */
 
+static const double removes[] = {
+	[FORECAST_ALL] = 1, [FORECAST_HALF] = 0.5, [FORECAST_TWICE] = 2,
+};
+
 struct run {
 	struct virtual v;
+	struct machine_config config;
 	struct forecast *to;
+	enum forecast_removal of;
 	const atomic_bool *ends;
 	double period_s, step_s;
 	struct forecast_part now;	/* the part that is being measured */
 	uint64_t counted;		/* periods of the job */
+	uint32_t at;			/* in this part, if they are known */
 	double far_mm;
 	double most_s, stuck_s;
+	char why_not[sizeof(((struct forecast *)0)->why_not)];
 };
 
 static void put_together(struct run *r)
@@ -35,9 +44,9 @@ static void put_together(struct run *r)
 		const struct forecast_part *b = &f->part[i + 1];
 
 		f->part[n++] = (struct forecast_part) {
-			.to_mm = b->to_mm, .cut_s = a->cut_s + b->cut_s,
+			.to_mm = b->to_mm, .cut_s = { *a->cut_s + *b->cut_s },
 			.other_s = a->other_s + b->other_s,
-			.cond = a->cut_s > b->cut_s ? a->cond : b->cond,
+			.cond = *a->cut_s > *b->cut_s ? a->cond : b->cond,
 		};
 	}
 	f->nparts = n;
@@ -49,7 +58,7 @@ static void end_part(struct run *r, double at_mm)
 	struct forecast *f = r->to;
 
 	r->now.to_mm = at_mm;
-	f->cut_s += r->now.cut_s;
+	f->cut_s += *r->now.cut_s;
 	f->other_s += r->now.other_s;
 	f->part[f->nparts++] = r->now;
 	r->now = (struct forecast_part) { .cond = r->now.cond };
@@ -68,32 +77,45 @@ static bool is_cut(const struct cycle *c)
 
 /* A part ends where the path goes on, so that the time for which it stands at a
  * place belongs to one part. */
-static void measure(struct run *r)
+static void divide(struct run *r, bool cut, double s)
 {
 	const struct cycle *c = &r->v.cycle;
-	const double s = (double)(c->totals.cycles - r->counted) * r->period_s;
-	const bool cut = is_cut(c);
 	struct forecast_part *p = &r->now;
 	const bool other = cut ? c->cursor.seg.cond != p->cond ||
-				 !(p->cut_s > 0) :
+				 !(*p->cut_s > 0) :
 			   !(p->other_s > 0);
 
-	r->counted = c->totals.cycles;
 	if (c->far_mm > r->far_mm &&
-	    p->cut_s + p->other_s >= (other ? r->step_s / 8 : r->step_s))
+	    *p->cut_s + p->other_s >= (other ? r->step_s / 8 : r->step_s))
 		end_part(r, r->far_mm);
 	r->far_mm = fmax(r->far_mm, c->far_mm);
 	if (cut) {
-		p->cut_s += s;
+		*p->cut_s += s;
 		p->cond = c->cursor.seg.cond;
 	} else {
 		p->other_s += s;
 	}
 }
 
+static void measure(struct run *r)
+{
+	const struct cycle *c = &r->v.cycle;
+	const double s = (double)(c->totals.cycles - r->counted) * r->period_s;
+	const bool cut = is_cut(c);
+
+	r->counted = c->totals.cycles;
+	if (r->of == FORECAST_ALL) {
+		divide(r, cut, s);
+		return;
+	}
+	r->at = forecast_part_at(r->to, r->at, c->far_mm);
+	if (cut)
+		r->to->part[r->at].cut_s[r->of] += s;
+}
+
 static void say_why_not(struct run *r, const char *what)
 {
-	snprintf(r->to->why_not, sizeof(r->to->why_not), "%s", what);
+	snprintf(r->why_not, sizeof(r->why_not), "%s", what);
 }
 
 /* A dwell, and what ends by time, say themselves how long they stand. */
@@ -105,8 +127,8 @@ static bool is_stuck(struct run *r, double was_mm)
 		     r->stuck_s + r->period_s;
 	if (r->stuck_s <= FORECAST_STUCK_S)
 		return false;
-	snprintf(r->to->why_not, sizeof(r->to->why_not), "it does not get on "
-		 "behind %.3f mm, in line %u, for %.0f min", c->far_mm,
+	snprintf(r->why_not, sizeof(r->why_not), "it does not get on behind "
+		 "%.3f mm, in line %u, for %.0f min", c->far_mm,
 		 c->cursor.seg.line, FORECAST_STUCK_S / 60);
 	return true;
 }
@@ -140,10 +162,15 @@ static int go(struct run *r)
 		if (is_stuck(r, was_mm))
 			return 0;
 	}
-	end_part(r, INFINITY);
 	if (c->state == STATE_FAULT)
 		say_why_not(r, fault_name(c->fault.first));
 	return 0;
+}
+
+static void suppose(struct forecast *f, enum forecast_removal of)
+{
+	for (uint32_t i = 0; i < f->nparts; i++)
+		f->part[i].cut_s[of] = *f->part[i].cut_s / removes[of];
 }
 
 static int begin(struct forecast *f, const struct interp_program *p)
@@ -161,6 +188,26 @@ static int begin(struct forecast *f, const struct interp_program *p)
 	return 0;
 }
 
+/* @r has `to`, `of`, `ends` and `most_s`. */
+static int run(struct run *r, const struct machine_config *c,
+	       const struct interp_program *p)
+{
+	int err;
+
+	r->config = *c;
+	r->config.sim.removal_mm3_min *= removes[r->of];
+	r->period_s = (double)config_period_ns(c) * 1e-9;
+	r->step_s = STEP_S;
+	err = virtual_open(&r->v, &(struct virtual_options) {
+		.config = &r->config, .program = p,
+		.seed = (uint64_t)c->sim.seed,
+	});
+	if (err == 0)
+		err = go(r);
+	virtual_close(&r->v);
+	return err;
+}
+
 int forecast_make(struct forecast *ret, const struct machine_config *c,
 		  const struct interp_program *p, double most_s,
 		  const atomic_bool *ends)
@@ -174,23 +221,50 @@ int forecast_make(struct forecast *ret, const struct machine_config *c,
 	r->to = ret;
 	r->ends = ends;
 	r->most_s = fmin(most_s, FORECAST_S_MAX);
-	r->period_s = (double)config_period_ns(c) * 1e-9;
-	r->step_s = STEP_S;
 	err = begin(ret, p);
 	if (err == 0)
-		err = virtual_open(&r->v, &(struct virtual_options) {
-			.config = c, .program = p,
-			.seed = (uint64_t)c->sim.seed,
-		});
+		err = run(r, c, p);
 	if (err == 0)
-		err = go(r);
-	virtual_close(&r->v);
+		end_part(r, INFINITY);
+	memcpy(ret->why_not, r->why_not, sizeof(ret->why_not));
 	free(r);
 	if (err)
 		forecast_free(ret);
 	else if (*ret->why_not)
 		ret->nparts = 0;
+	else
+		suppose(ret, FORECAST_HALF), suppose(ret, FORECAST_TWICE);
 	return err;
+}
+
+int forecast_vary(struct forecast *f, const struct machine_config *c,
+		  const struct interp_program *p, const atomic_bool *ends)
+{
+	struct run *r = calloc(1, sizeof(*r));
+	int err = r ? 0 : -ENOMEM;
+
+	for (enum forecast_removal of = FORECAST_HALF; f->nparts && !err &&
+	     of < FORECAST_REMOVALS; of++) {
+		memset(r, 0, sizeof(*r));
+		r->to = f;
+		r->of = of;
+		r->ends = ends;
+		r->most_s = FORECAST_S_MAX;
+		for (uint32_t i = 0; i < f->nparts; i++)
+			f->part[i].cut_s[of] = 0;
+		err = run(r, c, p);
+		if (err || *r->why_not)
+			suppose(f, of);
+	}
+	free(r);
+	return err;
+}
+
+uint32_t forecast_part_at(const struct forecast *f, uint32_t at, double far_mm)
+{
+	while (at + 1 < f->nparts && far_mm > f->part[at].to_mm)
+		at++;
+	return at;
 }
 
 void forecast_free(struct forecast *f)

@@ -79,6 +79,24 @@ double process_nearest(const struct process_delivers *d, int field,
 	return fmin(d->min + fmax(steps, 0) * d->step, d->max);
 }
 
+/* A generator that nobody turns round is positive. */
+bool process_takes(const struct process_delivers *d, int field, double value)
+{
+	return isnan(value) || (field == INTERP_TECH_POLARITY && value > 0) ||
+	       (!d->there && process_is_setting(field)) ||
+	       !isnan(process_nearest(d, field, value));
+}
+
+bool process_is_setting(int field)
+{
+	static const bool is_setting[INTERP_NTECH] = {
+#define IS_SETTING(id, of, member) [INTERP_TECH_##id] = true,
+		PROCESS_SETTINGS(IS_SETTING)
+	};
+
+	return field < INTERP_NGENERATOR && is_setting[field];
+}
+
 double *process_setting(enum interp_tech_id id, struct cycle_gap_config *gap,
 			struct cycle_jump_config *jump)
 {

@@ -38,6 +38,8 @@
 /*
  * What crosses to the generator: the fields of a condition up to
  * INTERP_NGENERATOR, by enum interp_tech_id, and then these, which are 0 or 1.
+ * Of a condition's, edmd goes by the settings itself: they cross where the
+ * machine file lays them out, and nothing is lost where it does not.
  * Those from PROCESS_NFIELDS it can only tell: sums that run on, of pulses and
  * of the energy of their discharges, and the number of its own fault.
  */
@@ -56,6 +58,10 @@ enum process_id {
 	PROCESS_NTOLD
 };
 
+/* No generator does more: a sum that seems to have gone on faster was reset. */
+#define PROCESS_MOST_PULSES_S	1e6
+#define PROCESS_MOST_W		1e5
+
 /* T(name, id): all that a generator can tell. */
 #define PROCESS_TELLS(T) \
 	T(peak_a, INTERP_TECH_PEAK_A) \
@@ -64,6 +70,7 @@ enum process_id {
 	T(polarity, INTERP_TECH_POLARITY) \
 	T(ignition_v, INTERP_TECH_IGNITION_V) \
 	T(iso, INTERP_TECH_ISO) \
+	T(servo_v, INTERP_TECH_SERVO_V) \
 	T(opens, PROCESS_OPENS) \
 	T(sparks, PROCESS_SPARKS) \
 	T(arcs, PROCESS_ARCS) \
@@ -77,6 +84,7 @@ enum process_id {
 struct process_delivers {
 	bool there;
 	bool by_hand;			/* a person sets it */
+	bool stays;			/* until it gets another one */
 	double min, max, step;		/* with n 0 */
 	uint32_t n;			/* else these alone, in any order */
 	double value[PROCESS_VALUES_MAX];
@@ -111,6 +119,14 @@ const char *process_told_text(const double told[PROCESS_NTOLD], char *buf,
  */
 double process_nearest(const struct process_delivers *d, int field,
 		       double asked);
+
+/** process_takes() - may a condition give @value?  Also where it is not
+ *  delivered and nothing is lost by that.  RT-safe. */
+bool process_takes(const struct process_delivers *d, int field, double value);
+
+/** process_is_setting() - is it one that edmd goes by itself too, and is lost
+ *  nowhere?  @field: of enum process_id.  RT-safe. */
+bool process_is_setting(int field);
 
 /** process_range_text() - which values reach the generator, into @buf. */
 void process_range_text(const struct process_delivers *d, int field, char *buf,

@@ -74,6 +74,7 @@
 	NUMBER(told_polarity) \
 	NUMBER(told_ignition_v) \
 	NUMBER(told_iso) \
+	NUMBER(told_servo_v) \
 	NUMBER(told_opens) \
 	NUMBER(told_sparks) \
 	NUMBER(told_arcs) \

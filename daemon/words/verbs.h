@@ -26,8 +26,8 @@
 	V(HOME)		/* idle: axis arg; 8: all axes */ \
 	V(JOG_ON)	/* axis at arg_mm mm/s while this is repeated */ \
 	V(CONFIRM)	/* what a stand asks for is done; arg_mm: its number */ \
-	V(TRY)		/* idle: ask the generator for field arg as arg_mm; \
-			 * NAN: no more; arg beyond the last: all of them */ \
+	V(TRY)		/* idle: ask the generator for field VERB_TRY_FIELD(arg) \
+			 * as arg_mm; NAN: no more; beyond the last: all */ \
 	V(PLACE)	/* idle: axis arg, which nothing homes, stands at \
 			 * arg_mm */
 
@@ -42,6 +42,15 @@
 #define VERB_PRESS_MAX		0xffffffu
 /* The axis stands still this long after the last sign of the press. */
 #define VERB_PRESS_S		0.2
+
+/*
+ * The argument of TRY.  What is leased is asked for until [generator] confirm_s
+ * and VERB_TRY_S are over since the last leased value: who walks through many
+ * of them may vanish.
+ */
+#define VERB_TRY_FIELD(arg)	((arg) & 0xff)
+#define VERB_TRY_LEASED		0x100u
+#define VERB_TRY_S		10.0
 
 #define VERB_ONE(verb)	+ 1
 

@@ -5,6 +5,7 @@
 #include <arpa/inet.h>
 #include <errno.h>
 #include <ifaddrs.h>
+#include <linux/filter.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -144,6 +145,65 @@ int udpm_open(struct udpm **ret, const struct udpm_url *url)
 	}
 	*ret = u;
 	return 0;
+}
+
+/* -- What is left in the kernel ------------------------------------------- */
+
+/* The kernel's filter sees a packet with its UDP header in front. */
+#define UDP_BYTES	8
+#define FILTER_MAX	512
+
+struct filter {
+	struct sock_filter step[FILTER_MAX];
+	int n;
+};
+
+static void step(struct filter *f, unsigned int code, uint32_t k, int unlike)
+{
+	if (f->n < FILTER_MAX)
+		f->step[f->n] = (struct sock_filter) {
+			.code = (uint16_t)code, .k = k, .jf = (uint8_t)unlike,
+		};
+	f->n++;
+}
+
+/* Take the packet if its channel is this one, with its NUL; else go on behind
+ * these steps. */
+static void step_channel(struct filter *f, const char *channel)
+{
+	const int size = (int)strlen(channel) + 1;
+
+	for (int i = 0; i < size; i++) {
+		step(f, BPF_LD | BPF_B | BPF_ABS,
+		     (uint32_t)(UDP_BYTES + HEAD_BYTES + i), 0);
+		step(f, BPF_JMP | BPF_JEQ | BPF_K, (uint8_t)channel[i],
+		     2 * (size - i) - 1);
+	}
+	step(f, BPF_RET | BPF_K, UINT32_MAX, 0);
+}
+
+/* What is none of LCM's short packets is taken, and counted as strange. */
+void udpm_choose(struct udpm *u, const char *const channel[], int n)
+{
+	struct filter f = { .n = 0 };
+	struct sock_fprog program;
+
+	step(&f, BPF_LD | BPF_W | BPF_LEN, 0, 0);
+	step(&f, BPF_JMP | BPF_JGT | BPF_K, UDP_BYTES + HEAD_BYTES, 2);
+	step(&f, BPF_LD | BPF_W | BPF_ABS, UDP_BYTES, 0);
+	step(&f, BPF_JMP | BPF_JEQ | BPF_K, SHORT_MAGIC, 0);
+	f.step[3].jt = 1;
+	step(&f, BPF_RET | BPF_K, UINT32_MAX, 0);
+	for (int i = 0; i < n; i++)
+		step_channel(&f, channel[i]);
+	step(&f, BPF_RET | BPF_K, 0, 0);
+	if (f.n > FILTER_MAX)
+		return;
+	program = (struct sock_fprog) {
+		.len = (unsigned short)f.n, .filter = f.step,
+	};
+	setsockopt(u->fd, SOL_SOCKET, SO_ATTACH_FILTER, &program,
+		   sizeof(program));
 }
 
 void udpm_why(const struct udpm_url *url, int err, char *to, size_t size)

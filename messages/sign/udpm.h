@@ -56,6 +56,15 @@ int udpm_open(struct udpm **ret, const struct udpm_url *url);
 /** udpm_why() - what @err of udpm_open() means, and what helps, in words. */
 void udpm_why(const struct udpm_url *url, int err, char *to, size_t size);
 
+/**
+ * udpm_choose() - take only these channels: what comes for another one is left
+ * in the kernel and wakes nobody.  Every service of a host has the same group,
+ * so each packet comes to all of them.
+ *
+ * Without it, and where the kernel does not allow it, all of them come.
+ */
+void udpm_choose(struct udpm *u, const char *const channel[], int n);
+
 /** udpm_close() - @u may be NULL. */
 void udpm_close(struct udpm *u);
 

@@ -29,16 +29,16 @@
 
 /* -- Generators ------------------------------------------------------------ */
 
-/* One on CAN that tells its current: fd -1, it does not. */
+/* One on CAN that tells what it was sent: fd -1, it does not. */
 static int far_fd = -1;
 
 static void can_tell(void)
 {
-	struct can_frame f, told = { .can_id = 1011, .can_dlc = 2 };
+	struct can_frame f, told = { .can_id = 1011, .can_dlc = 8 };
 	bool any = false;
 
 	while (far_fd >= 0 && read(far_fd, &f, sizeof(f)) == sizeof(f)) {
-		memcpy(told.data, f.data + 2, 2);
+		memcpy(told.data, f.data, 8);
 		any = true;
 	}
 	if (any && write(far_fd, &told, sizeof(told)) != sizeof(told))
@@ -190,11 +190,12 @@ static struct generator *make(struct shop *s, const char *keys)
 
 	snprintf(text, sizeof(text), "[machine]\nbackend = null\n"
 		 "period_us = 1000\n[generator]\npolarity_ms = 0\n"
-		 "silent_ms = 5000\nconfirm_s = 10\n%s", keys);
+		 "confirm_s = 10\n%s", keys);
 	return shop_generator(s, text);
 }
 
-#define REGISTERS	"peak_a = register 0 scale 0.1\n" \
+#define REGISTERS	"silent_ms = 5000\n" \
+	"peak_a = register 0 scale 0.1\n" \
 	"on_us = register 1 scale 0.1\noff_us = register 2 scale 0.1\n" \
 	"ignition_v = register 3\npolarity = register 5 bit 0\n"
 
@@ -228,8 +229,8 @@ static void by_can(const char *name, const char *more)
 	char text[300];
 	int fd[2];
 
-	snprintf(text, sizeof(text), "interface = can\ncan_id = 1009\n%s",
-		 more);
+	snprintf(text, sizeof(text), "interface = can\ncan_id = 1009\n"
+		 "silent_ms = 5000\n%s", more);
 	g = make(&s, text);
 	if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, fd) < 0)
 		exit(1);
@@ -299,7 +300,10 @@ int main(void)
 	make_file(NULL);
 	by_lines();
 	by_can("can_settled", "");
-	by_can("can_told", "told_peak_a = can 1011 byte 0 bits 16 scale 0.1\n");
+	by_can("can_told", "told_peak_a = can 1011 byte 2 scale 0.1\n"
+	       "told_on_us = can 1011 byte 4 scale 0.1\n"
+	       "told_off_us = can 1011 byte 6 scale 0.1\n"
+	       "told_polarity = can 1011 byte 0 bit 2\n");
 	by_tcp();
 	by_rtu();
 	by_dac();

@@ -5,8 +5,8 @@
  * The input is a row of records: a kind, and its contents.  There are whole
  * commands with any values, packets that are not commands, periods that pass,
  * programs that edmd's main thread opens meanwhile, and other states of the
- * machine's switches.  Nothing may move unless a verb of motion was answered
- * "done", and then only within the travel.
+ * machine's switches.  No target of a drive may change unless a verb of motion
+ * was answered "done", and no axis may leave its travel.
  */
 #include "command.c"
 
@@ -120,7 +120,8 @@ static void note_motion(const struct shm_command *c)
 	const uint32_t v = c->verb;
 
 	if (v == SHM_DO_START || v == SHM_DO_RESUME || v == SHM_DO_RETRACT ||
-	    v == SHM_DO_STEP || v == SHM_DO_JOG || v == SHM_DO_HOME)
+	    v == SHM_DO_STEP || v == SHM_DO_JOG || v == SHM_DO_HOME ||
+	    v == SHM_DO_JOG_ON)
 		w.motion[w.motions++ % MOTIONS] = c->id;
 }
 
@@ -148,7 +149,7 @@ static void turn(void)
 {
 	int32_t before[INTERP_NAXES];
 
-	memcpy(before, w.l.cycle.out.target, sizeof(before));
+	memcpy(before, w.out.target, sizeof(before));
 	loop_commands(&w.l);
 	serve();
 	loop_replies(&w.l);
@@ -160,7 +161,7 @@ static void turn(void)
 
 		assert(at >= w.l.cycle.config.travel_min[i]);
 		assert(at <= w.l.cycle.config.travel_max[i]);
-		assert(w.asked || at == before[i]);
+		assert(w.asked || w.out.target[i] == before[i]);
 	}
 	assert(w.asked || !w.out.power);
 	/* It came to an end: from here on somebody must ask again. */
@@ -273,6 +274,7 @@ static void begin_machine(bool dry)
 	crossing_init(&w.l.crossing);
 	ck_ring_init(&commands->ring, SHM_COMMAND_SLOTS);
 	commands->connected = -1;
+	w.out = (struct io_outputs) { .place_mm = 0 };
 	w.in = (struct io_inputs) { .gap_valid = true, .gap_v = OPEN_V };
 	w.events = (struct shm_follow) { .next = 0 };
 	w.motions = 0;

@@ -20,13 +20,22 @@ static void *compile(const struct interp_text *text,
 		     struct interp_program *p)
 {
 	const struct interp_build_options bo = { .machine = m };
+	/* Set at the machine, but for what was written from a program. */
+	const struct interp_setting set = {
+		.wire_mm = text->bytes % 2 ? 0.1 : 0,
+		.scale = text->bytes % 5 ? 0 : 1.005,
+		.turn_deg = text->bytes % 7 ? 0 : 30,
+		.mirror = (int)(text->bytes / 2 % INTERP_NMIRRORS),
+	};
 	const struct interp_compile_options o = {
 		.nc = { .machine = m,
 			.tech = text->bytes % 3 ? fuzz_tech() : NULL,
 			.segs_max = must_take ? UINT32_MAX : 1000,
 			.executed_max = must_take ? UINT32_MAX : 10000,
 			.feed_mm_s = 1 },
-		.threeb.offset_um = 100,
+		.threeb = { .offset_um = 100,
+			    .set = must_take ?
+				   (struct interp_setting) { 0 } : set },
 	};
 	struct interp_build *b = interp_build_create(&bo);
 	struct interp_diag diag = { .found = "" };

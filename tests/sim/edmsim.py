@@ -16,6 +16,19 @@ AXES = "XYZABCUV"
 STRATEGIES = ["simultaneous", "point-by-point"]
 
 
+def machine_text(keys="offset_1_mm = 0.14", guides="off", between=(-20, 80),
+                 planes=(0, 40), more=""):
+    """A machine file: keys of [wire], guides at two heights, and the planes of
+    a program.  With guides there are no other axes than X Y U V."""
+    text = f"[machine]\nname = m\n[wire]\n{keys}\n"
+    if guides != "off":
+        text += (f"guides = {guides}\nz_lower_mm = {between[0]}\n"
+                 f"z_upper_mm = {between[1]}\nz_program_mm = {planes[0]}\n"
+                 f"z_second_mm = {planes[1]}\n")
+        text += "".join(f"[axis.{a}]\npresent = no\n" for a in "ZABC")
+    return text + more
+
+
 # Ends what hangs: far above what any run needs, because a busy host is slow.
 HANGS_S = 3600
 

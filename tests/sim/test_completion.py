@@ -46,6 +46,13 @@ def test_every_option_of_the_help_is_completed(name):
 def test_verbs_values_and_files():
     assert offered(["edmctl", "off"]) == ["offset"]
     assert offered(["edmctl", "--machine", "queue", "mo"]) == ["move"]
+    assert offered(["edmctl", "jog", ""])[-8:] == list("XYZABCUV")
+    assert offered(["edmctl", "place", "X", "as"]) == ["as-seen"]
+    assert offered(["edmctl", "move", "j7", "f"]) == ["front"]
+    assert offered(["edmctl", "offset", "G5"])[:2] == ["G54", "G55"]
+    assert offered(["edmctl", "set", "servo"]) == ["servo_v"]
+    assert offered(["edmctl", "faults", "plc"]) == ["plc-lost"]
+    assert offered(["edmctl", "drive", "get", "V"]) == ["V"]
     assert offered(["edmctl", "submit", "cavity"]) == ["cavity.ngc"]
     assert offered(["edmsim", "--machine", "wire.i"]) == ["wire.ini"]
     assert offered(["edmctl", "--plot", "--"]) == []

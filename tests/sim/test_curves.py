@@ -6,6 +6,7 @@ import re
 
 import pytest
 from edmsim import ROOT, assert_neighbours, places, pulses, report, run
+from speed_programs import machine, program
 
 BLADE = ROOT / "examples/blade.ngc"
 STRATEGIES = ["simultaneous", "centred", "min-switch"]
@@ -35,6 +36,16 @@ def test_six_axes_meet_the_same_points_at_any_feed_and_period(strategy):
     assert rows[0] == rows[1] == rows[2]
     assert rows[0][0] == rows[0][-1]
     assert_neighbours(rows[0])
+
+
+@pytest.mark.parametrize("kind, seed", [("wave", 4), ("spiral", 3)])
+def test_so_do_curves_that_are_joined_from_lines(tmp_path, kind, seed):
+    p, limits = program(kind, seed)
+    of = machine(tmp_path, limits)
+    rows = [places("--machine", of, "--dry-run", "--fit", "2", "--period-us",
+                   period, text=p.text().replace("F6000", f"F{feed}"))
+            for feed, period in ((6000, 1000), (200, 1000), (6000, 5000))]
+    assert rows[0] == rows[1] == rows[2]
 
 
 @pytest.mark.parametrize("strategy", STRATEGIES)

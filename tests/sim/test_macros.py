@@ -463,7 +463,7 @@ REFUSED = [
     ("linuxcnc", "G0 X#<_feed>\n",
      b":1:5: error: #<_feed>, which has no value; a parameter that the"),
     ("linuxcnc", "#<_x> = 3\n", b":1:1: error: a value for #<_x>, which is"),
-    ("linuxcnc", "F5 G2 X1 I1 P2\n", b":1:13: error: P2: turns of an arc"),
+    ("generic", "F5 G2 X1 I1 P2\n", b":1:13: error: P2: turns of an arc"),
     ("fanuc-wire", "M98 P1 L2\nM30\nO1\nM99\n",
      b":1:8: error: L2: in this dialect the centre of the top's arc"),
     ("fanuc-sinker", "O12345\nGOTO 7\nM30\nO23456\nN7 G0 X1.\nM30\n",

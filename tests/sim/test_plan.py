@@ -174,12 +174,38 @@ def test_a_body_that_is_inside_out_is_turned_and_said(tmp_path, part, say, mm3):
     assert ("exchanged" in r.stdout) == ("shells" in say)
 
 
+@pytest.mark.parametrize("part", (BESIDE, box((5, -2, -5), (25, 12, 5))))
+def test_a_check_writes_the_files_that_are_asked_for(tmp_path, part):
+    r = check_boxes(tmp_path, part, TOOL, "G21 G90\nG1 X20 F60\nM2\n",
+                    "--report", "-", "--picture", tmp_path / "p.svg",
+                    "--view", tmp_path / "v.html")
+    report = json.loads(r.stdout)
+    assert r.returncode == (0 if report["proved"] else 1)
+    assert report["proved"] == (part is BESIDE)
+    assert report["blocks"] == 1
+    picture = (tmp_path / "p.svg").read_text()
+    assert ("first contact red" in picture) != report["proved"]
+    assert "POSES" in (tmp_path / "v.html").read_text()
+    if not report["proved"]:
+        assert "not free" in r.stderr
+        contact = report["contact"]
+        assert contact["line"] == 2
+        assert 3.7 < contact["axes"]["X"] < 4
+        assert contact["wanted_mm"] >= 0.1
+
+
+def test_a_check_has_no_program_to_write(tmp_path):
+    r = check_boxes(tmp_path, BESIDE, TOOL, "G1 X1 F60\nM2\n", "--output",
+                    tmp_path / "out.ngc")
+    assert r.returncode == 64 and "--report, --picture or --view" in r.stderr
+
+
 def test_what_joining_edges_moves_is_kept_in_addition(tmp_path):
     near = [tuple(tuple(x + 4e-4 * (i % 2) for x in p) for p in t)
             for i, t in enumerate(box((0, 2, 0), (20, 12, 5)))]
     joined = check_boxes(tmp_path, near, TOOL)
     assert joined.returncode == 0, joined.stderr
-    assert "edges that nearly meet are joined, by 0.000" in joined.stdout
+    assert "corners that nearly meet are joined, by 0.000" in joined.stdout
 
 
 def test_triangles_doubled_or_without_area_do_no_harm(tmp_path):

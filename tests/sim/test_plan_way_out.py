@@ -2,10 +2,12 @@
 """edm-plan --end-pose in cavities whose ways out are known, with FCL as the
 judge of what is written."""
 import json
+import random
 import re
 
 import pytest
-from plan_cavities import CASES, LIFT, tilt
+from plan_cavities import CASES, LIFT, Case, block_round, prism, tilt
+from shapely.geometry import Polygon, box
 from test_plan import plan
 from test_plan_judge import least, model
 
@@ -23,6 +25,23 @@ def ask(folder, case, *more, clearance=None):
                 "--clearance", clearance or case.gap / 2, "--chord", 0,
                 "--end-pose", case.end, "--output", folder / "way.ngc",
                 "--report", folder / "r.json", *more)
+
+
+def bowl():
+    cavity = Polygon([(-20, 0), (-20, -40), (-3, -40), (-3, -55), (3, -55),
+                      (3, -40), (20, -40), (20, 0)])
+    case = Case(block_round(cavity, 12, (-30, 30)),
+                prism(box(-2, -54, 2, -34), -4, 4), 1, 1.0)
+    write = case.write
+
+    def with_short_travel(folder):
+        write(folder)
+        text = (folder / "machine.ini").read_text()
+        (folder / "machine.ini").write_text(re.sub(
+            r"(\[axis.Z\])[^[]*", r"\1\ntravel_min_mm = -60\n"
+            r"travel_max_mm = -36\nstart_mm = -38\n", text))
+    case.write = with_short_travel
+    return case
 
 
 def nodes(text):
@@ -57,6 +76,17 @@ def test_it_is_proved_that_a_cage_has_no_way_out(tmp_path):
     assert not (tmp_path / "way.ngc").exists()
 
 
+def test_a_machine_may_stand_in_a_bowl(tmp_path):
+    """Its travel does not lead out of the part, but to where it stands."""
+    case = bowl()
+    r = ask(tmp_path, case)
+    assert r.returncode == 0, r.stderr
+    path = nodes((tmp_path / "way.ngc").read_text())
+    assert path[-1] == {"X": 0, "Y": 0, "Z": -LIFT}
+    assert least(model(case.part), model(case.electrode), CHAIN,
+                 path) >= case.gap / 2
+
+
 def test_a_way_that_is_not_found_says_how_far_it_came(tmp_path):
     """With a rotary axis nothing is proved of it: the search ends in time."""
     case = CASES["caged"]()
@@ -75,6 +105,32 @@ def test_the_same_bodies_give_the_same_way(tmp_path):
     first = (tmp_path / "way.ngc").read_text()
     assert ask(tmp_path, case).returncode == 0
     assert (tmp_path / "way.ngc").read_text() == first
+
+
+def with_needles(tris):
+    """An edge of each triangle is cut in two, and a triangle without area is
+    between it and its neighbour."""
+    out = []
+    for a, b, c in tris:
+        mid = tuple((x + y) / 2 for x, y in zip(a, b))
+        out += [(a, mid, c), (mid, b, c), (a, b, mid)]
+    return out
+
+
+@pytest.mark.parametrize("needles", (False, True))
+def test_corners_may_be_a_little_apart(tmp_path, needles):
+    draw = random.Random(5)
+    case = CASES["turns-2"](tilt(5))
+
+    def noisy(tris):
+        return [tuple(tuple(x + draw.uniform(-1e-6, 1e-6) for x in p)
+                      for p in t)
+                for t in (with_needles(tris) if needles else tris)]
+    case.part, case.electrode = noisy(case.part), noisy(case.electrode)
+    r = ask(tmp_path, case)
+    assert r.returncode == 0, r.stderr
+    way = json.loads((tmp_path / "r.json").read_text())["written"]
+    assert way["blocks"] <= case.blocks
 
 
 def test_an_end_pose_outside_of_the_part_is_refused(tmp_path):

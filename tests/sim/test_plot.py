@@ -49,3 +49,23 @@ def test_the_shipped_orbit_fits_its_panel(tmp_path):
     done("--plot", svg, "--machine", ROOT / "examples/machine.ini",
          ROOT / "examples/orbit.ngc")
     assert_on_page(svg, PATH)
+
+
+def test_an_upper_guide_by_places_is_drawn_at_its_places(tmp_path):
+    """A cone whose guides go round at 5.94 and 0.70 mm."""
+    svg, ini = tmp_path / "p.svg", tmp_path / "m.ini"
+    ini.write_text("[machine]\nname = m\n[wire]\nguides = absolute\n"
+                   "[axis.Z]\npresent = no\n[axis.A]\npresent = no\n"
+                   "[axis.B]\npresent = no\n[axis.C]\npresent = no\n")
+    done("--dry-run", "--plot", svg, "--machine", ini, "--dialect", "3b",
+         "--taper", 3, "--wire-offset", 0.11,
+         text="B5000 B0 B5000 GX L1\nB5000 B0 B20000 GY NR1\n"
+              "B5000 B0 B5000 GX L3\nDD\n")
+    wide = {}
+    for g in ET.parse(svg).getroot().iter(SVG + "g"):
+        title = g.find(SVG + "title")
+        if title is not None and title.text in ("cut", "upper guide"):
+            # The last piece of each is its sample in the key.
+            x = [p[0] for p in places(g)]
+            wide[title.text] = max(x) - min(x)
+    assert 0.1 < wide["upper guide"] / wide["cut"] < 0.6

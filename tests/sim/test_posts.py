@@ -8,28 +8,11 @@ import re
 
 import pytest
 
-from edmsim import ROOT, run
+from edmsim import ROOT, machine_text, run
 
 POSTS = ROOT / "tests/data/posts"
 
-WIRE = """
-[machine]
-name = wire
-[axis.Z]
-present = no
-[axis.A]
-present = no
-[axis.B]
-present = no
-[axis.C]
-present = no
-[wire]
-guides = relative
-z_lower_mm = -20
-z_upper_mm = 80
-z_second_mm = 40
-offset_1_mm = 0.14
-"""
+WIRE = machine_text(guides="relative")
 
 # The program defines its conditions: no column of them is used.
 TECH = "condition, servo_v\nC999, 20\ninline C =" + " -" * 16 + "\n"
@@ -57,13 +40,15 @@ FILES = {
     "makino.nc": ("M60", ["M60", "T84", "M50"]),
     "mastercam-wire-hsm.nc": (None, []),
     "mastercam-wire.nc": ("M60", ["M60", "M20", "M21", "M50"]),
+    "mitsubishi-wire.nc": ("L001", ["M91", "M20", "M78", "M80", "M82", "M84", "M90",
+                                    "M01", "M85", "M83", "M81", "M21", "M58"]),
     "sodick-sinker.nc": (None, ["M05"]),
     "sodick-wire.nc": ("'='", ["Q", "G92", "G29", "T94"]),
 }
 DIALECTS = ["3b", "4b", "agievision", "charmilles-cmd",
             "charmilles-robofil-440", "charmilles-robofil", "fanuc-sinker",
             "fanuc-wire", "generic", "heekscnc", "linuxcnc",
-            "makino", "mastercam-wire",
+            "makino", "mastercam-wire", "mitsubishi-wire",
             "sodick-sinker", "sodick-wire"]
 
 

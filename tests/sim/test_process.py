@@ -208,11 +208,18 @@ def test_a_programmed_stop_is_gone_on_from():
 
 # -- Options and exit codes ------------------------------------------------------
 
-def test_check_reads_and_tells_but_runs_nothing(tmp_path):
+def test_check_writes_the_files_of_a_dry_run(tmp_path):
     pulses = tmp_path / "p.csv"
-    r = run("--check", "--pulses", pulses, text=SINK)
+    r = run("--check", "--report", "-", "--pulses", pulses, text=SINK)
+    assert r.returncode == 0 and b"0.600 mm cut" in r.stderr
+    told = json.loads(r.stdout)
+    assert told["outcome"] == "done" and told["path_mm"] == pytest.approx(2.2)
+    assert pulses.read_text().count("\n") > 2200
+
+
+def test_check_reads_and_tells():
+    r = run("--check", text=SINK)
     assert r.returncode == 0
-    assert not pulses.exists()
     told = dict(row.split(None, 1) for row in r.stdout.decode().splitlines())
     assert told["lines"] == "5" and told["segments"] == "2"
     assert told["path"].startswith("2.200 mm: 0.600 mm cut")

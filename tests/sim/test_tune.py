@@ -30,7 +30,8 @@ def test_the_worst_flushing_gets_fewer_shorts_and_more_removal():
 def test_equal_seed_equal_values_another_seed_others():
     a, b, c = tuned(), tuned(), tuned("--seed", 77)
     assert a == b
-    assert a["keys"] != c["keys"]
+    # The best of its trials may be the same one.
+    assert a["train"]["score"] != c["train"]["score"]
     assert a["trials"] == 24
 
 

@@ -429,5 +429,5 @@ M2
         off = shapely.distance(shapely.points(at[on][::5, 1:]), curve)
         assert np.abs(off - abs(wire + by)).max() < BOUND_MM
     # Three corners of the contour and two of the leads; none on the curve.
-    r = run("--machine", WIRE, "--report", "-", "--check", text=text)
+    r = run("--machine", WIRE, "--check", text=text)
     assert b"dwells     5, 0.500 s" in r.stdout

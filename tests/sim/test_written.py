@@ -5,38 +5,18 @@ import pytest
 import shapely
 from shapely.geometry import LineString
 
-from edmsim import run
+from edmsim import machine_text, run
 from rs274 import canonical_calls, peer
 from written import FOLDER, differs, programs, way_of, way_of_iso, way_of_rs274
 
 ALL = [pytest.param(p, id=f"{f.stem}:{p.name}",
                     marks=[peer] if p.kind == "peer" else [])
        for f in sorted(FOLDER.glob("*.txt")) for p in programs(f)]
-MACHINE = """[machine]
-name = m
-[wire]
-offset_1_mm = 0.14
-offset_2_mm = 0.1
-[axis.Z]
-travel_min_mm = -200
-travel_max_mm = 200
-"""
-
-
+OFFSETS = "offset_1_mm = 0.14\noffset_2_mm = 0.1"
+MACHINE = machine_text(OFFSETS, more="[axis.Z]\ntravel_min_mm = -200\n"
+                                     "travel_max_mm = 200\n")
 # The guides are in the planes: X Y are the bottom's way, U V the top's.
-GUIDES = MACHINE.replace("[wire]", """[wire]
-guides = absolute
-z_lower_mm = 0
-z_upper_mm = 10
-z_program_mm = 0
-z_second_mm = 10""").replace("[axis.Z]\n", "[axis.Z]\npresent = no\n") + """
-[axis.A]
-present = no
-[axis.B]
-present = no
-[axis.C]
-present = no
-"""
+GUIDES = machine_text(OFFSETS, "absolute", (0, 10), (0, 10))
 PULSE_MM = 0.001
 
 

@@ -53,12 +53,18 @@ def repeated(want):
                   lambda m: " ".join([m[1]] * int(m[2])), want)
 
 
-def arc(at, to, centre, sense):
-    """Places of an arc behind its start; equal ends make a full circle."""
+def angles(at, to, centre, sense):
+    """Where an arc begins, and how far it turns; equal ends make a full circle."""
     a, b = (math.atan2(p[1] - centre[1], p[0] - centre[0]) for p in (at, to))
     sweep = sense * (b - a) % (2 * math.pi)
     if sweep < 1e-9 or 2 * math.pi - sweep < 1e-9:
         sweep = 2 * math.pi
+    return a, sweep
+
+
+def arc(at, to, centre, sense):
+    """Places of an arc behind its start."""
+    a, sweep = angles(at, to, centre, sense)
     n = max(int(sweep / STEP), 2)
     r = math.dist(at[:2], centre)
     z = at[2], to[2]
@@ -89,11 +95,12 @@ def arc_in(plane, at, to, centre, sense, turns=0):
     order = PLANES[plane]
     p, q = ([v[i] for i in order] for v in (at, to))
     c = p[0] + centre[0], p[1] + centre[1]
-    pts = []
+    pts, z = [], p[2]
+    rise = (q[2] - z) / (turns + angles(p, q, c, sense)[1] / (2 * math.pi))
     for k in range(turns):
-        z = p[2] + (q[2] - p[2]) * (k + 1) / (turns + 1)
-        pts += arc(p, (*p[:2], z), c, sense)
-        p = [*p[:2], z]
+        up = [*p[:2], z + rise * (k + 1)]
+        pts += arc(p, up, c, sense)
+        p = up
     pts += arc(p, q, c, sense)
     return [tuple(v[order.index(i)] for i in range(3)) for v in pts]
 

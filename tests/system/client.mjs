@@ -17,7 +17,7 @@ const [, GROUP, port] = URL.match(/^udpm:\/\/([0-9.]+):(\d+)\?ttl=0$/)
 const PORT = Number(port)
 const TYPE = {
 	signed: "49657b54b950317d", command: "633b130fba8a2ccf",
-	ack: "e7a36102b59e523d", chunk: "9e1f02d601e2f309",
+	ack: "e7a36102b59e523d", chunk: "02d6b52732df0242",
 }
 
 // -- Laying out and reading
@@ -161,7 +161,7 @@ function submit(key, path) {
 	ask(key, "JOB", (client, seq) => all(hex(TYPE.chunk), i64(0), str(client), i64(seq),
 		str(job), str("job.ngc"), i64(text.length),
 		crypto.createHash("sha256").update(text).digest(), i32(0), i32(1), i64(0),
-		Buffer.from([0]), i32(0), f64(0), i32(0), i32(text.length), text), (a) => a.code || a.body)
+		Buffer.from([0]), i32(0), f64(0), i32(0), str(""), i32(text.length), text), (a) => a.code || a.body)
 }
 
 const [what, verb, text = "", arg = "0"] = process.argv.slice(2)

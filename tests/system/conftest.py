@@ -1,4 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
+import os
+import subprocess
+
 import panel
 import pytest
 import rig
@@ -64,3 +67,13 @@ def p(tmp_path_factory):
     p.start()
     yield p
     p.close()
+
+
+@pytest.fixture(scope="session")
+def shim(tmp_path_factory):
+    """The preloaded library that lets a folder's disk fail."""
+    out = tmp_path_factory.mktemp("shim") / "failing_disk.so"
+    source = os.path.join(os.path.dirname(__file__), "failing_disk.c")
+    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", str(out), source,
+                    "-ldl"], check=True)
+    return out

@@ -3,7 +3,7 @@
 
 Holding registers, by the addresses of the requests: 10 peak current in 0.1 A,
 11 on time in 0.1 us, 12 off time in 0.1 us, 13 open-circuit voltage, 14 bit 0
-negative electrode, bit 1 iso pulse, bit 8 pump.  Input registers 30, 31: peak
+negative electrode, bit 1 iso pulse, bit 8 pump, 15 servo voltage in 0.1 V.  Input registers 30, 31: peak
 current and on time as they are; 40, 41 good pulses, the high half first; 42, 43 arcs,
 the low one first; 44, 45 energy in mJ; 46 its own fault.
 """
@@ -22,7 +22,7 @@ from pymodbus.datastore import (
 from pymodbus.pdu import ExceptionResponse
 from pymodbus.server import ModbusSerialServer, ModbusTcpServer
 
-FIRST, LAST = 10, 14
+FIRST, LAST = 10, 15
 LAYOUT = """
 peak_a = register 10 scale 0.1
 on_us = register 11 scale 0.1
@@ -31,6 +31,7 @@ ignition_v = register 13
 polarity = register 14 bit 0
 iso = register 14 bit 1
 pump = register 14 bit 8
+servo_v = register 15 scale 0.1
 """
 SUMS = """
 told_sparks = input 40 bits 32

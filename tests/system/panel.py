@@ -5,6 +5,7 @@ The clients speak HTTP and web sockets by other libraries than the panel's, and
 can be as rude as a test wants.
 """
 
+import contextlib
 import http.client
 import json
 import os
@@ -103,6 +104,7 @@ class Panel:
         (self.folder / "copper-steel.tech").write_text(table)
         self.machine = rig.Machine(folder, text)
         self.process = None
+        self.beside = contextlib.ExitStack()    # what ends with it
         self.secure = "certificate" in more
 
     @property
@@ -145,6 +147,7 @@ class Panel:
             self.process.send_signal(signal.SIGTERM)
             assert self.process.wait(timeout=20) == 0, self.log()
         self.machine.close()
+        self.beside.close()
         print(f"-- edm-panel\n{self.log()}")
         assert "ERROR: " not in self.log(), "a sanitizer spoke"
 

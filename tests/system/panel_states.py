@@ -6,6 +6,11 @@ and the pages that show it.  The pictures (docs/pictures/panel) and the page's
 tests walk through the same states.
 """
 
+import os
+import pathlib
+import sys
+
+import can_bus
 import panel
 import rig
 from test_touch import PLATE
@@ -28,10 +33,54 @@ KNOBS = panel.CUT_MACHINE.replace("copper-steel.tech", "shop.tech") + (
     "\n[generator]\ninterface = none\nby_hand = on_us off_us\n")
 SETS = b"G21 G90\nC200\nG1 Z-2 F30\nM30\n"
 
+# A PLC, and a changer that it has.
+WAITS = SHOP + """
+[plc]
+interface = can0
+alive_ms = 5000
+m_before = 6
+m_timeout_s = 0
+"""
+WAITED = b"G21 G90 F600\nT3 M6\nG0 X60\nM30\n"
+
+# Two drives, a gap, and a generator that tells what it has.
+DRIVEN = can_bus.DRIVEN + """\
+following_mm = 5
+resync_mm = 10
+gap_id = 1008
+
+[gap]
+servo_v = 15
+feed_gain_mm_s_v = 0.1
+feed_max_mm_s = 5
+approach_mm_s = 1
+
+[tech]
+table = shop.tech
+
+[generator]
+interface = can
+can_interface = can0
+can_id = 1009
+told_on_us = can 1011 byte 2 scale 0.1
+silent_ms = 60000
+confirm_s = 600
+
+
+""" + "".join(f"[axis.{a}]\npresent = no\n" for a in "ZABC") + "".join(
+    f"[axis.{a}]\ndrive_increments = 1000\ndrive_pulses = 1000\n"
+    "travel_min_mm = -100\ntravel_max_mm = 100\nabsolute = yes\n"
+    for a in "XY") + """
+[jobs]
+store = {store}
+""" + OF_PANEL
+POWERED = b"G21 G90\nG0 X1\nC200\nG1 X9 F60\nM30\n"
+DRIVES = pathlib.Path(__file__).parents[1] / "vm/guest/drives.py"
+
 # Each way takes so long that it can be looked at.
 SLOW = panel.CUT_MACHINE.replace("height_mm = 1", "height_mm = 40") + "".join(
     f"\n[axis.{a}]\nv_max_mm_s = {v}\njog_mm_s = 0.5\n"
-    for a, v in (("X", 1), ("Y", 1), ("Z", 1)))
+    for a, v in (("X", 5), ("Y", 5), ("Z", 1)))
 DEEP = b"".join([b"G21 G90 G94\nT84\nM3\nC120\nG0 X20\nG0 X0 Y0 Z0\n"] + [
     f"G1 Z-{i / 10:.1f} F30\nG1 X{1 + i % 3} Y{i % 2}\nG3 X{-1 - i % 2} Y1 "
     f"R4\nG1 X0 Y0\n".encode() for i in range(1, 60)] + [b"M30\n"])
@@ -62,8 +111,7 @@ home_off_mm = 12
 store = {store}
 """ + OF_PANEL
 
-FEELS = PLATE.replace("feed_mm_s = 2", "feed_mm_s = 0.2").replace(
-    "speed = 20", "speed = 1") + OF_PANEL
+FEELS = PLATE.replace("speed = 20", "speed = 1") + OF_PANEL
 
 WIRE = """
 [machine]
@@ -192,9 +240,11 @@ def sets(p):
 def cuts(p):
     """A die-sinker at its work, and what comes between."""
     c = p.machine.client
+    c.ask("override", arg=0.1)
     send(c, DEEP, "deep", name="cavity-12.ngc")
     c.status_where(lambda s: s.state == "travel" and s.pos_mm[0] > 1, 60)
     yield "travel", CUT
+    c.ask("override", arg=1)
     c.status_where(lambda s: s.state == "erode" and s.place_mm > 40.3, 200)
     for i in range(3):
         p.session().post(f"/api/jobs?name=next-{i}-%E7%94%B5.ngc&hold=1", DEEP)
@@ -221,6 +271,42 @@ def cuts(p):
         c.ask("remove", job["job"])
     idle(c)
     yield "history", ("jobs",)
+
+
+def waits(p):
+    """What a PLC does, and what it holds."""
+    c, plc = p.machine.client, can_bus.Plc(p.bus)
+    for n in (1, 3):
+        c.ask("electrode-add", arg=n, text="name=rib")
+    send(c, WAITED, "waits", name="plate 7.ngc", hold=True)
+    stand(c, "ready")
+    c.ask("start")
+    stand(c, "m-code")
+    yield "m-code", CUT
+    plc.done = 6
+    moves(c)
+    plc.done = 0
+    plc.hold(True)
+    stand(c, "plc")
+    yield "plc", CUT
+    plc.hold(False)
+    rig.until(lambda: c.ask("start").code == 0)
+    moves(c)
+
+
+def powers(p):
+    """What is waited for by itself: a brake, and a generator."""
+    c, drives = p.machine.client, p.folder / "drives"
+    p.bus.loop(lambda: p.bus.tell(1011, bytes(8)))      # no on time yet
+    send(c, POWERED, "powers", name="rib.ngc", hold=True)
+    stand(c, "ready")
+    drives.write_text("brake 1 100000\ngap 60\n")
+    rig.until(lambda: c.ask("start").code == 0)
+    stand(c, "power")
+    yield "power", CUT
+    drives.write_text("brake 1 5\n")
+    stand(c, "generator")
+    yield "generator", CUT
 
 
 def homes(p):
@@ -285,15 +371,24 @@ WALKS = {
     "stands": (SHOP, 1, stands),
     "sets": (KNOBS, 1, sets),
     "cuts": (SLOW, 1, cuts),
+    "waits": (WAITS, 1, waits),
+    "powers": (DRIVEN, 1, powers),
     "homes": (HOMED, 1, homes),
     "feels": (FEELS, 1, feels),
     "wires": (WIRE, 1, wires),
     "gone": (SHOP, 1, gone),
 }
 
-
 def machine_of(walk, folder):
     config, speed, _ = WALKS[walk]
     p = panel.Panel(folder, speed=speed, config=config)
     (p.folder / "shop.tech").write_text(TABLE)
+    if "can0" in config:
+        p.bus = p.beside.enter_context(can_bus.Bus(folder))
+        p.machine.env = lambda program: p.bus.env()
+    if "node_X" in config:
+        os.mkfifo(p.folder / "drives")
+        p.beside.enter_context(p.bus.program(
+            sys.executable, DRIVES, "can0", p.folder / "drives", "--every",
+            0.02, 1, 2))
     return p

@@ -73,6 +73,21 @@ def until(what, timeout=5.0, step=0.01):
         time.sleep(step)
 
 
+def udp_rows(pid):
+    """The rows of /proc/net/udp of a process: its sockets."""
+    mine = set()
+    for fd in pathlib.Path(f"/proc/{pid}/fd").iterdir():
+        with contextlib.suppress(FileNotFoundError):    # closed meanwhile
+            if m := re.match(r"socket:\[(\d+)\]", os.readlink(fd)):
+                mine.add(m[1])
+    rows = pathlib.Path("/proc/net/udp").read_text().splitlines()[1:]
+    return [r.split() for r in rows if r.split()[9] in mine]
+
+
+def udp_port(row):
+    return int(row[1].split(":")[1], 16)
+
+
 def preload(shim):
     """LD_PRELOAD of @shim, and of what stands there already."""
     return ":".join(filter(None, (str(shim), os.environ.get("LD_PRELOAD"))))
@@ -109,6 +124,7 @@ class Client:
         self.name = f"test-{os.getpid()}-{random.getrandbits(32):08x}"
         self.seq = 0
         self.acks, self.statuses, self.events = [], [], []
+        self.counts = []                # of the statuses
         # LCM keeps its handlers for ever: one that knows this client would keep
         # it and its sockets, and select() ends at 1024 descriptors.
         me = weakref.proxy(self)
@@ -151,10 +167,14 @@ class Client:
             return
         if s.boot not in self.ended:
             if s.boot != self.boot:     # its clock begins anew
-                self.boot, self.count = s.boot, 0
-            self.base = s.count - time.monotonic_ns() // 1000
+                self.boot, self.count, self.base = s.boot, 0, -sys.maxsize
+            # What comes late seems to come from a slower clock.
+            self.base = max(self.base,
+                            s.count - time.monotonic_ns() // 1000)
         elif kind is status_t:
             return      # it may say that all is well, and waited here
+        if kind is status_t:
+            self.counts.append(s.count)
         where.append(kind.decode(bytes(s.data)))
 
     def seal(self, channel, data, boot=None, count=None):
@@ -241,7 +261,7 @@ class Client:
         return self.heard(answered, timeout)[0]
 
     def chunks(self, text, job, name="job.ngc", size=CHUNK, hold=False,
-               from_line=0, from_mm=0):
+               from_line=0, from_mm=0, setting=""):
         pieces = [text[i:i + size] for i in range(0, len(text), size)] or [b""]
         made = []
         for i, piece in enumerate(pieces):
@@ -254,6 +274,7 @@ class Client:
             m.chunk, m.chunks, m.offset = i, len(pieces), i * size
             m.hold = hold
             m.from_line, m.from_mm = from_line, from_mm
+            m.setting = setting
             m.size, m.data = len(piece), piece
             made.append(m)
         return made
@@ -290,16 +311,18 @@ class Client:
 
     def status(self, timeout=2.0):
         """One that is told from now on."""
-        n = len(self.statuses)
-        self.heard(lambda: len(self.statuses) > n, timeout)
-        return self.statuses[-1]
+        return self.status_where(lambda s: True, timeout)
 
     def status_where(self, what, timeout=5.0):
         """The first, from now on, for which what(status) is true."""
-        self.hear(0.001)
-        n = len(self.statuses)
+        # What waited in the socket meanwhile is older.
+        boot, now = self.boot, time.monotonic_ns() // 1000
+        told, counted = len(self.statuses), len(self.counts)
         return self.heard(
-            lambda: next((s for s in self.statuses[n:] if what(s)), None),
+            lambda: next((s for s, count in zip(self.statuses[told:],
+                                                self.counts[counted:])
+                          if (self.boot != boot or count >= now + self.base)
+                          and what(s)), None),
             timeout,
         )
 
@@ -367,10 +390,15 @@ class Machine:
     def _command(self, program):
         return [str(BUILD / program)]
 
+    def env(self, program):
+        """What @program has in its environment beside ours."""
+        return {}
+
     def _start(self, program, *args):
         with open(self.folder / f"{program}.log", "ab") as log:
             return subprocess.Popen(
-                [*self._command(program), *args], stdout=log, stderr=log
+                [*self._command(program), *args], stdout=log, stderr=log,
+                env=os.environ | self.env(program)
             )
 
     def kill(self, which):

@@ -29,12 +29,9 @@ class Jumping(rig.Machine):
         super().__init__(folder)
         self.shim = shim
 
-    def _start(self, program, *args):
-        env = os.environ | {"LD_PRELOAD": rig.preload(self.shim),
-                            "EDM_CLOCK": str(self.folder / "ahead")}
-        with open(self.folder / f"{program}.log", "ab") as log:
-            return subprocess.Popen([str(rig.BUILD / program), *args],
-                                    stdout=log, stderr=log, env=env)
+    def env(self, program):
+        return {"LD_PRELOAD": rig.preload(self.shim),
+                "EDM_CLOCK": str(self.folder / "ahead")}
 
     def ahead(self, seconds):
         new = self.folder / "ahead.new"

@@ -40,6 +40,17 @@ def table(m):
     return {e["n"]: e for e in json.loads(r.stdout)}
 
 
+def test_a_turn_is_in_degrees_and_needs_a_c(tmp_path):
+    with rig.Machine(tmp_path, rig.NULL_MACHINE +
+                     "\n[axis.C]\npresent = no\n") as m:
+        m.start()
+        r = m.ctl("electrode", "add", "3", "c=400")
+        assert r.returncode == 65 and "-360 to 360 degrees" in r.stderr
+        r = m.ctl("electrode", "add", "3", "c=5")
+        assert r.returncode == 65 and "no C that turns" in r.stderr
+        add(m, 3, "c=0")
+
+
 def test_the_table_is_kept_and_changed(machine):
     m = machine
     assert m.ctl("electrode", "list").stdout == "none\n"

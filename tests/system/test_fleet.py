@@ -5,12 +5,17 @@ The peer is PyPI's cyclonedds; its type is written out here by hand from
 messages/edm.idl, so that what is tested is what is on the wire.
 """
 
+import contextlib
 import dataclasses
 import gc
 import json
 import math
+import os
 import signal
+import socket
 import subprocess
+import threading
+import time
 
 import pytest
 import rig
@@ -30,8 +35,8 @@ from cyclonedds.sub import DataReader  # noqa: E402
 from cyclonedds.topic import Topic  # noqa: E402
 from cyclonedds.util import duration  # noqa: E402
 
-TOLD = """peak_a on_us off_us polarity ignition_v iso opens sparks arcs shorts
-energy_j fault""".split()
+TOLD = """peak_a on_us off_us polarity ignition_v iso servo_v opens sparks arcs
+shorts energy_j fault""".split()
 
 
 class GeneratorState(IdlEnum, typename="edm.GeneratorState"):
@@ -76,6 +81,7 @@ class MachineState(IdlStruct, typename="edm.MachineState"):
     told_polarity: float64
     told_ignition_v: float64
     told_iso: float64
+    told_servo_v: float64
     told_opens: float64
     told_sparks: float64
     told_arcs: float64
@@ -84,6 +90,7 @@ class MachineState(IdlStruct, typename="edm.MachineState"):
     told_fault: float64
     generator_fault: bounded_str[63]
     depth_far_mm: float64
+    known: uint32
 
 
 class Peer:
@@ -271,7 +278,8 @@ def test_edm_fleet_lists_all_machines(fleet):
     p = edm_fleet("--once", "--wait", "3")
     lines = p.stdout.splitlines()
     assert lines[0].startswith("MACHINE")
-    assert [r.split()[0] for r in lines[1:]] == [a.name, b.name]
+    assert [r.split()[0] for r in lines[1:]] == sorted(
+        [a.name, b.name])
 
 
 def test_edm_fleet_shows_who_is_gone(fleet, peer):
@@ -304,7 +312,7 @@ def test_a_hostile_sample_is_shown_as_harmless_text(peer):
         position_mm=[math.nan] * 8,
         generator_state=GeneratorState.GENERATOR_ERROR, is_on=True,
         jumps=0, retracts=0, shorts=0, overruns=0, wake_late_max_us=-1e308,
-        generator_fault="\x1b[2J", depth_far_mm=math.inf,
+        generator_fault="\x1b[2J", depth_far_mm=math.inf, known=1,
         **{f"told_{n}": math.inf for n in TOLD}, **words)
     writer = DataWriter(peer.participant, peer.topic, qos=peer.writing)
     writer.write(s)
@@ -350,3 +358,122 @@ def test_a_peer_may_ask_for_a_sample_each_second(fleet):
         peer.state(m, "absent")
     finally:
         peer.close()
+
+
+def listed(m, *more):
+    """What edm-fleet says of a machine."""
+    p = edm_fleet("--once", "--wait", "1", "--json", *more)
+    return {r["machine"]: r for r in json.loads(p.stdout or '{"machines": []}')
+            ["machines"]}.get(m.name, {})
+
+
+def stranger_says(m, **more):
+    """A sample of a stranger in the name of a machine."""
+    words = dict(host="elsewhere", state="idle", fault="none",
+                 outcome="none", stand="", generator_fault="")
+    numbers = {f.name: 0 for f in dataclasses.fields(MachineState)}
+    return MachineState(**numbers | words | dict(
+        machine=m.name, position_mm=[0] * 8, is_on=False,
+        generator_state=GeneratorState.GENERATOR_READY) | more)
+
+
+@contextlib.contextmanager
+def telling(sample):
+    """A program of its own says it, 20 times a second."""
+    p, stop = Peer(), threading.Event()
+    writer = DataWriter(p.participant, p.topic, qos=p.writing)
+
+    def tell():
+        while not stop.wait(0.05):
+            writer.write(sample)
+
+    t = threading.Thread(target=tell)
+    t.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        t.join()
+        del writer
+        p.close()
+
+
+def test_a_name_that_two_programs_tell_is_disputed(fleet, peer):
+    m, _ = fleet
+    m.start_edmd()
+    m.start_dds()
+    peer.state(m, "idle")
+    assert listed(m)["state"] == "idle"
+    with telling(stranger_says(m, state="erode")):
+        until(lambda: listed(m)["state"] == "disputed", 20)
+        p = edm_fleet("--once", "--wait", "1")
+        assert "told by two; also from" in p.stdout
+    until(lambda: listed(m)["state"] == "idle", 20)
+
+
+def test_an_edm_dds_that_is_started_anew_is_no_dispute(fleet, peer):
+    m, _ = fleet
+    m.start_edmd()
+    with subprocess.Popen([str(BUILD / "edm-fleet"), "--watch", "--json"],
+                          stdout=subprocess.PIPE, text=True) as p:
+        try:
+            for _ in range(3):
+                m.start_dds()
+                peer.state(m, "idle")
+                m.kill("dds")
+            m.start_dds()
+            gone = until(lambda: listed(m)["state"] == "idle", 20)
+        finally:
+            p.terminate()
+        shown = [r["state"] for line in p.stdout
+                 for r in json.loads(line)["machines"]]
+    assert gone and "disputed" not in shown and "idle" in shown, shown
+
+
+def test_edm_fleet_waits_for_all_that_anybody_knows(fleet, peer):
+    """A machine that others have found, and this listener not yet."""
+    m, _ = fleet
+    with telling(stranger_says(m, known=2)):
+        p = edm_fleet("--once", "--wait", "0.5")
+    assert p.returncode == 1
+    assert "heard 1 of 2 machines" in p.stderr
+    assert m.name in p.stdout
+    for m in fleet:
+        m.start_dds()
+    peer.where(m, lambda s: s.known == 2)
+    p = edm_fleet("--once", "--wait", "1")
+    assert p.returncode == 0, p.stderr
+    p = edm_fleet("--once", "--wait", "0.5", "--expect", "4")
+    assert p.returncode == 1 and " of 4 machines" in p.stderr
+
+
+def test_garbage_is_counted_and_not_told_packet_by_packet(fleet, peer):
+    m, _ = fleet
+    m.start_dds()
+    peer.state(m, "absent")
+    s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    ports = {rig.udp_port(r) for r in rig.udp_rows(m.dds.pid)}
+    for _ in range(300):
+        for port in ports:
+            s.sendto(b"RTPS\x02\x05\x01\x10" + os.urandom(64),
+                     ("127.0.0.1", port))
+    peer.state(m, "absent")
+    lines = (m.folder / "edm-dds.log").read_text().splitlines()
+    assert len([r for r in lines if "DDS, " in r]) == 1, lines
+    assert len(lines) < 4, lines
+
+
+def test_edm_fleet_says_that_new_machines_still_came(fleet, peer):
+    m, _ = fleet
+    writer = DataWriter(peer.participant, peer.topic, qos=peer.writing)
+    with subprocess.Popen([str(BUILD / "edm-fleet"), "--once", "--wait", "1"],
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as p:
+        n = 0
+        while p.poll() is None:
+            s = stranger_says(m)
+            s.machine, n = f"{m.name}-{n}", n + 1
+            writer.write(s)
+            time.sleep(0.1)
+        assert p.returncode == 1
+        assert "new ones still came" in p.stderr.read()

@@ -29,7 +29,8 @@ def test_each_field_is_shown(knobs):
     text = knobs.ctl("generator").stdout
     assert text.startswith("interface none; sparks off; ")
     assert list(fields(knobs)) == [
-        "peak_a", "on_us", "off_us", "polarity", "ignition_v", "iso"]
+        "peak_a", "on_us", "off_us", "polarity", "ignition_v", "iso",
+        "servo_v"]
     assert fields(knobs)["off_us"]["by"] == "hand"
     assert not fields(knobs)["peak_a"]["delivered"]
 
@@ -38,7 +39,8 @@ def test_what_cannot_be_tried_is_refused_with_what_would_be(knobs):
     for field, value, code, words in (
         ("peak_a", "6", 65, "[generator] peak_a = how it is reached"),
         ("off_us", "20", 65, "a person sets off_us"),
-        ("servo_v", "20", 65, "one of peak_a on_us off_us polarity"),
+        ("servo_v", "20", 65, "[generator] servo_v = how it is reached"),
+        ("gap_mm", "0.1", 65, "one of peak_a on_us off_us polarity"),
         ("peak_a", "much", 64, "'much' is no number"),
         ("", "6", 65, "one of peak_a"),
     ):

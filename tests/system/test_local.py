@@ -2,6 +2,7 @@
 """Clients of the machine's own host need no network: they ask edmd-jobs by a
 socket in the file system.  LCM's multicast is for all others."""
 
+import json
 import os
 import pathlib
 import signal
@@ -64,6 +65,9 @@ class Lonely(rig.Machine):
     def _clear(self):
         for verb in ("hold", "reset", "stop"):
             self.ctl(verb)
+        # It is at its end a while behind the answer.
+        rig.until(lambda: not json.loads(
+            self.ctl("--json", "status").stdout)["job"])
 
     def ctl(self, *args):
         return subprocess.run(

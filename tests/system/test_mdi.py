@@ -82,6 +82,15 @@ def test_a_machine_that_is_not_idle_refuses_with_the_reason(machine):
     c.status_where(lambda s: s.daemon == "ok")
 
 
+def test_a_line_with_nothing_in_it_is_no_job_with_an_electrode_either(machine):
+    assert machine.ctl("electrode", "add", "3").returncode == 0
+    assert machine.ctl("electrode", "use", "3").returncode == 0
+    for text in ("", " ", "M30"):
+        code, out = said(machine.ctl("mdi", text))
+        assert code == 65 and "empty program" in out, out
+    assert machine.ctl("history").stdout == "none\n"
+
+
 def test_it_wants_an_operator_and_is_done_once(machine):
     c = machine.client
     assert c.ask("mdi", text="G91\nG0 X1").code == 0

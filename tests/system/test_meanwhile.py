@@ -26,14 +26,9 @@ class Gated(rig.Machine):
         self.shim, self.gate = shim, self.folder / "gate"
         os.mkfifo(self.gate)
 
-    def _start(self, program, *args):
-        if program != "edmd":
-            return super()._start(program, *args)
-        with open(self.folder / "edmd.log", "ab") as log:
-            return subprocess.Popen(
-                [*self._command(program), *args], stdout=log, stderr=log,
-                env={**os.environ, "LD_PRELOAD": rig.preload(self.shim),
-                     "EDM_GATE": str(self.gate)})
+    def env(self, program):
+        return {"LD_PRELOAD": rig.preload(self.shim),
+                "EDM_GATE": str(self.gate)} if program == "edmd" else {}
 
     def is_asked(self):
         """Does edmd stand there?  Return: the way on, or None."""

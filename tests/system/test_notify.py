@@ -87,7 +87,7 @@ ENV = {**os.environ, "PYTHONPATH": str(ROOT / "clients/python")}
 
 
 @contextlib.contextmanager
-def notify(m, to, more="", without=()):
+def notify(m, to, more="", without=(), ends=signal.SIGTERM):
     config = m.folder / "notify.ini"
     state = m.folder / "state"
     state.mkdir(exist_ok=True)
@@ -101,7 +101,7 @@ def notify(m, to, more="", without=()):
         yield config
     finally:
         assert p.poll() is None, said(m)
-        p.send_signal(signal.SIGTERM)
+        p.send_signal(ends)
         p.wait(20)
 
 
@@ -165,6 +165,42 @@ def test_a_restart_tells_nothing_twice(shop, hook):
             hook.until("stands")
             shop.client.hear(2)
     assert hook.kinds() == ["stands"]
+
+
+def test_what_waits_when_it_is_killed_is_sent_by_the_next_one(shop, hook):
+    """A job that is over is told once, and in no STATUS: it must not be lost.
+    Neither is what waits for the end of quiet hours."""
+    hook.broken = True
+    to = f"[to.me/here]\nurl = {hook.url}"
+    with notify(shop, to, "quiet = 00:00-24:00\nalways = fault stands",
+                ends=signal.SIGKILL):
+        change(shop)
+        rig.until(lambda: "503" in said(shop), 30)
+        go_on(shop)
+        rig.until((shop.folder / "state" / "later.json").exists, 30)
+    waits = shop.folder / "state" / "waits-me%2Fhere.json"
+    assert len(json.loads(waits.read_text())) == 1
+    hook.broken = False
+    with notify(shop, to, "repeat_min = 0"):
+        hook.until("stands")
+        hook.until("done")
+        shop.client.hear(1)
+    assert hook.kinds() == ["stands", "done"]
+    assert json.loads(waits.read_text()) == []
+
+
+def test_no_more_wait_than_two_hundred(tmp_path):
+    """Nor more than a text of 1000 characters each: the file is bounded."""
+    code = ("import sys; from edm.notify import *\n"
+            f"k = Kept(Path('{tmp_path}/w.json'))\n"
+            "for i in range(205): k.put(Message(str(i), 'done', 'm', 'j', 't', "
+            "'x' * TEXT_MAX, '', i), 'me')\n"
+            f"print(*Kept(Path('{tmp_path}/w.json')).waits)")
+    r = subprocess.run([sys.executable, "-c", code], env=ENV, timeout=60,
+                       capture_output=True, text=True)
+    assert r.stdout.split() == [str(i) for i in range(5, 205)], r.stderr
+    assert r.stderr.count("given up") == 5
+    assert (tmp_path / "w.json").stat().st_size < 200 * 1200
 
 
 def test_quiet_hours_wait_but_for_what_is_always_told(shop, hook):

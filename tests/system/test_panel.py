@@ -118,10 +118,37 @@ def test_a_check_reads_a_pipe_as_it_reads_a_file(tmp_path):
     assert (piped.stdout, piped.returncode) == (read.stdout, read.returncode)
 
 
+RECORDS = (b"B1000 B0 B1000 GX L1\nB1000 B0 B4000 GY NR1\nB1000 B0 B1000 GX L3\n"
+           b"DD\n")
+
+
+def test_what_is_set_for_a_job_is_checked_and_sent_with_it(p, me):
+    plain, large = (me.post(f"/api/check?name=a.3b&set={s}", RECORDS)[1]
+                    for s in ("", "scale%3D2%20turn%3D30"))
+    assert plain["ok"] and large["ok"]
+    assert large["length"] == pytest.approx(2 * plain["length"], rel=1e-3)
+    bad = me.post("/api/check?name=a.3b&set=taper%3D81", RECORDS)[1]
+    assert not bad["ok"] and bad["found"] == "taper=81", bad
+    assert bad["wanted"] == "a number from -80 to 80 degrees"
+    assert me.post(f"/api/check?name=a.3b&set={'x' * 192}", RECORDS)[0] == 400
+    with me.live() as live:
+        live.where(lambda s: s.get("jobs"))
+        got = me.post("/api/jobs?name=a.3b&hold=1&set=scale%3D2", RECORDS)[1]
+        assert got["code"] == 0, got
+        assert live.ask("show", job=got["job"])["body"]["setting"] == "scale=2"
+        live.where(lambda s: s["job"] == got["job"] and s["loaded"])
+        assert live.ask("remove", job=got["job"])["code"] == 0
+        live.where(lambda s: not s["job"])
+        got = me.post("/api/jobs?name=a.3b&hold=1&set=scale%3D0", RECORDS)[1]
+        assert got["code"] == 65 and "scale=0; a number from" in got["reason"]
+
+
 def test_a_job_runs_from_upload_to_end(p, me):
     with me.live() as live:
         live.where(lambda s: s.get("jobs"))
-        status, got = me.post("/api/jobs?name=part.ngc&hold=1", panel.JOB)
+        # So long a cut that it cannot end before this test has asked all.
+        text = panel.JOB.replace(b"Z-2.4", b"Z-40")
+        status, got = me.post("/api/jobs?name=part.ngc&hold=1", text)
         assert status == 200 and got["code"] == 0, got
         live.where(lambda s: s["job"] == got["job"] and s["loaded"])
         assert live.state["jobName"] == "part.ngc"
@@ -150,6 +177,9 @@ def test_a_job_runs_from_upload_to_end(p, me):
         live.where(lambda s: s["state"] == "hold")
         assert live.ask("stop")["code"] == 0
         live.where(lambda s: s["state"] == "idle" and not s["loaded"])
+        status, _, body = p.ask("GET", "/api/path?program=99",
+                                headers=me.headers())
+        assert status == 404 and b"not there any more" in body, body
         past = live.ask("past", arg=5)["body"]
         assert past[0]["name"] == "part.ngc"
     assert f"operator, 127.0.0.1): start" in p.log()

@@ -438,6 +438,26 @@ def test_technology_is_saved_on_the_host_and_comes_back(p, page):
     assert file.read_text() == was
 
 
+def test_what_is_begun_is_there_when_its_page_is_opened_again(p, page):
+    show(page, "setup")
+    page.locator("#mdi").fill("G0 X5")
+    page.locator(".probing").get_by_role("radio", name="Hole").click()
+    way = page.locator(".probing input").first
+    way.fill("7.5")
+    show(page, "tech")
+    cell = page.get_by_label("C100 mean gap voltage to hold")
+    cell.fill("21.5")
+    cell.press("Enter")
+    expect(page.locator("#techsave")).to_be_visible()
+    show(page, "cut")
+    show(page, "setup")
+    expect(page.locator("#mdi")).to_have_value("G0 X5")
+    expect(way).to_have_value("7.5")
+    show(page, "tech")
+    expect(page.locator("#techsave")).to_be_visible()
+    expect(cell).to_have_value("21.5")
+
+
 def test_the_lie_of_the_work_is_a_form(p, page):
     end_job(page, p)
     show(page, "setup")
@@ -743,6 +763,43 @@ def test_the_page_says_what_it_stands_for_and_takes_the_answer(p, page):
     press(page.locator("#start"))
     client.job_where("change", "done", 30)
     client.ask("electrode-use", arg=0)
+
+
+# The second of a press is over when the test says so.
+SECOND = """() => {
+    const set = setTimeout, clear = clearTimeout, held = new Map();
+    window.setTimeout = (f, ms, ...more) => ms !== 1000 ? set(f, ms, ...more) :
+        (held.set(-1 - held.size, f), -held.size);
+    window.clearTimeout = (n) => held.delete(n) || clear(n);
+    window.over = () => { held.forEach((f) => f()); return held.size; };
+}"""
+
+
+def test_a_press_is_for_the_job_it_was_begun_for(p, page):
+    """The job is ended, and the next one comes, while a finger is on the key."""
+    client = p.machine.client
+    end_job(page, p)
+    for job in ("first", "second"):
+        assert client.submit(b"G21 G90\nG0 Z1\nM30\n", job, name=f"{job}.ngc",
+                             hold=True).code == 0
+    key, why = page.locator("#start"), page.locator(".head .state p")
+    expect(why).to_contain_text("first.ngc")
+    expect(key).to_have_attribute("aria-disabled", "false")
+    page.evaluate(SECOND)
+    key.hover()
+    page.mouse.down()
+    expect(key).to_have_class(re.compile("pressed"))
+    client.ask("stop")
+    expect(why).to_contain_text("second.ngc")
+    expect(key).not_to_have_class(re.compile("pressed"))
+    assert page.evaluate("window.over()") == 0
+    page.mouse.up()
+    key.hover()
+    page.mouse.down()
+    expect(key).to_have_class(re.compile("pressed"))
+    assert page.evaluate("window.over()") == 1
+    page.mouse.up()
+    client.job_where("second", "done", 20)
 
 
 # Is a line of text shown whole, with nothing of it cut off?

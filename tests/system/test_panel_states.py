@@ -10,9 +10,14 @@ import re
 import panel_states
 import pytest
 from playwright.sync_api import expect
-from test_panel_page import AXE, PATIENCE_MS, SIZES, chromium  # noqa: F401
+from test_panel_page import AXE, PATIENCE_MS, SIZES, chromium, show  # noqa: F401
 
 TONGUES = ("en-GB", "zh-CN")
+
+# What the first line begins with where the machine stands.
+HEADS = dict.fromkeys(("power", "generator", "m-code", "override"), "Waits") | \
+    dict.fromkeys(("stop", "optional-stop", "electrode", "setting", "held", "plc",
+                   "reset", "restart"), "Held") | {"ready": "Ready"}
 
 # Of the head: is the line whole, in sight, and beside the key Stop?
 SAYS = """() => {
@@ -108,22 +113,25 @@ def pages_of(chromium, p):
     return made
 
 
-def show(page, name):
-    page.evaluate(f"location.hash = '#/{name}'")
-    page.locator(f"main.page-{name}").wait_for()
-    page.wait_for_timeout(150)
+# All that is wrong with a page at this size, when it is drawn.
+WRONG = f"""async ([cut, sums]) => {{
+    for (let i = 0; i < 2; i++) await new Promise(requestAnimationFrame);
+    const of = (what, found) => found.map((one) => [what, one]);
+    return [...of("cut off", ({SAYS})()), ...of("small", ({SMALL})()), ...(cut ?
+        [...of("hidden", ({HIDDEN})(sums)), ...of("wrapped", ({WRAPPED})())] : [])];
+}}"""
 
 
-def look(page, name, size, tongue):
-    """All that is wrong on a page now."""
-    wrong = [("cut off", t) for t in page.evaluate(SAYS)]
-    wrong += [("small", t) for t in page.evaluate(SMALL)]
-    if name == "cut":
-        wrong += [("hidden", t) for t in page.evaluate(HIDDEN, size[0] > 640)]
-        wrong += [("wrapped", t) for t in page.evaluate(WRAPPED)]
-    if tongue == "zh-CN" and size == SIZES[0]:
-        wrong += [("English", t) for t in sentences(page, name)]
-    return wrong
+def look(page, name, tongue):
+    """Page @name at each size: all that is wrong, and with which width."""
+    show(page, name)
+    for width, height in SIZES:
+        page.set_viewport_size({"width": width, "height": height})
+        for what in page.evaluate(WRONG, [name == "cut", width > 640]):
+            yield width, *what
+    if tongue == "zh-CN":
+        for what in sentences(page, name):
+            yield width, "English", what
 
 
 def contrast(page):
@@ -138,9 +146,10 @@ def contrast(page):
 
 
 def told(wrong, *where):
+    wrong = [(*where, *one) for one in wrong]
     for one in wrong:
-        print(*where, *one, flush=True)
-    return [(*where, *one) for one in wrong]
+        print(*one, flush=True)
+    return wrong
 
 
 @pytest.mark.parametrize("walk", panel_states.WALKS)
@@ -153,14 +162,12 @@ def test_every_state_is_said_and_can_be_acted_on(tmp_path, chromium,  # noqa: F8
         pages = pages_of(chromium, p)
         for state, names in panel_states.WALKS[walk][2](p):
             for tongue, page in pages.items():
-                for size in SIZES:
-                    page.set_viewport_size({"width": size[0],
-                                            "height": size[1]})
-                    for name in names:
-                        show(page, name)
-                        found += told(look(page, name, size, tongue), state,
-                                      name, size[0], tongue)
+                for name in names:
+                    found += told(look(page, name, tongue), state, name, tongue)
             found += told(contrast(page), state, "contrast")
+            if state in HEADS:
+                expect(pages["en-GB"].locator(".head h1")).to_have_text(
+                    HEADS[state])
     finally:
         for page in pages.values():
             page.context.close()

@@ -5,6 +5,7 @@ import json
 import pathlib
 import re
 
+import can_bus
 import pytest
 import rig
 from test_power import die
@@ -13,6 +14,13 @@ MACHINE = rig.NULL_MACHINE + "\n[tech]\ntable = shop.tech\n"
 TABLE = "condition, servo_v, on_us\nC100, 20, 10\nC200, 20, 20\n"
 CHANGE = (b"G21 G90 F600\nG0 Z2\nT3 M6\nG1 Z1\nM0 (turn the part)\nG1 Z0\n"
           b"G0 Z2\nM30\n")
+CHANGED = rig.NULL_MACHINE + """
+[plc]
+interface = can0
+alive_ms = 10000
+m_before = 6
+m_timeout_s = 0
+"""
 EMPTY = b"G21 G90 F600\nG0 Z2\nT0 M6\nG1 Z1\nM30\n"
 
 
@@ -61,7 +69,7 @@ def test_an_electrode_is_asked_for_and_confirmed(shop):
     assert "not before this: put electrode 3 rib in" in said
     assert held(shop) == [1]
     said = ctl(shop, "done", "2", code=1)
-    assert "not what the machine asks for" in said
+    assert "not what the machine asks for: put electrode 3 rib in" in said
     ctl(shop, "start", code=1)
     ctl(shop, "done", "3")
     s = shop.client.status_where(lambda s: "3 is in" in s.asks)
@@ -167,7 +175,8 @@ def test_done_where_nothing_is_asked_is_refused(shop):
     shop.client.submit(CHANGE.replace(b"T3 M6\n", b""), "work", hold=True)
     s = stands(shop, "ready")
     assert s.asks == "the job is ready; edmctl start begins it"
-    assert "not what the machine asks for" in ctl(shop, "done", code=1)
+    assert "not what the machine asks for: the job is ready" in \
+        ctl(shop, "done", code=1)
     ctl(shop, "done", "three", code=64)
 
 
@@ -182,6 +191,36 @@ def test_a_hold_says_whose_it_was(shop):
     until = s.stand_s
     shop.client.status_where(lambda s: s.stand_s > until)
     ctl(shop, "override", "0")
+
+
+def test_what_a_plc_does_and_holds_is_said_and_is_no_time_of_the_job(tmp_path):
+    """The line is that of the M code, and nobody takes the wait for slow cutting."""
+    with can_bus.Bus(tmp_path) as bus, rig.Machine(tmp_path, CHANGED) as m:
+        m.env = lambda program: bus.env()
+        m.start()
+        c, plc = m.client, can_bus.Plc(bus)
+        ctl(m, "electrode", "add", "3", "name=rib")
+        rig.until(lambda: c.submit(b"G21 G90 F60\nG1 X2\nG1 X4 T3 M6\nG1 X60\nM30\n",
+                                   "work").code == 0)
+        s = stands(m, "m-code")
+        assert (s.line, s.asks) == (
+            3, "the PLC carries out an M code: M6; it goes on by itself")
+        later = c.status_where(lambda t: t.stand_s > s.stand_s + 2, 20)
+        assert (later.eta_s, later.progress) == (s.eta_s, s.progress) != (-1, 0)
+        plc.done = 6
+        c.status_where(lambda s: s.line == 4, 20)
+        plc.done = 0
+        plc.hold(True)
+        assert stands(m, "plc").asks == \
+            "the PLC held it; once the PLC lets go, start goes on"
+        assert "the PLC holds: nothing may move until" in ctl(m, "start", code=1)
+        plc.bits &= ~can_bus.PERMIT
+        plc.hold(False)
+        rig.until(lambda: "may move now: the PLC took its permit away; edmctl "
+                  "faults permit" in ctl(m, "start", code=1))
+        plc.bits |= can_bus.PERMIT
+        rig.until(lambda: c.ask("start").code == 0)
+        c.status_where(lambda s: s.stand == "" and s.place_mm > 5, 60)
 
 
 def test_every_stand_is_written_where_people_look():

@@ -13,16 +13,6 @@ import rig
 from rig import QUICK_JOB, SLOW_JOB
 
 
-@pytest.fixture(scope="session")
-def shim(tmp_path_factory):
-    """The preloaded library that lets a folder's disk fail."""
-    out = tmp_path_factory.mktemp("shim") / "failing_disk.so"
-    source = os.path.join(os.path.dirname(__file__), "failing_disk.c")
-    subprocess.run(["cc", "-shared", "-fPIC", "-O1", "-o", str(out), source,
-                    "-ldl"], check=True)
-    return out
-
-
 class Failing(rig.Machine):
     """A machine whose edmd-jobs stores on a disk that fails on demand."""
 
@@ -33,16 +23,11 @@ class Failing(rig.Machine):
         self.shim = shim
         self.errno = self.folder / "errno"
 
-    def _start(self, program, *args):
-        env = dict(os.environ)
-        if program == "edmd-jobs":
-            env |= {"LD_PRELOAD": rig.preload(self.shim),
-                    "EDM_DISK": str(self.store),
-                    "EDM_DISK_ERRNO": str(self.errno)}
-        with open(self.folder / f"{program}.log", "ab") as log:
-            return subprocess.Popen(
-                [str(rig.BUILD / program), *args], stdout=log, stderr=log,
-                env=env)
+    def env(self, program):
+        return {"LD_PRELOAD": rig.preload(self.shim),
+                "EDM_DISK": str(self.store),
+                "EDM_DISK_ERRNO": str(self.errno)
+                } if program == "edmd-jobs" else {}
 
     def fail(self, number):
         self.errno.with_suffix(".new").write_text(str(number))

@@ -184,3 +184,28 @@ def test_a_hello_is_signed_for_the_status_that_was_heard(idle, client):
     rc, said = service.serve(often, client(service, "hold"))
     assert (rc, "done" in said) == (0, True), said
     assert service.asked[0][1] == 0
+
+
+def left_in_the_kernel(pid):
+    """Packets that the socket of multicast of a process did not take."""
+    return sum(int(r[12]) for r in rig.udp_rows(pid)
+               if rig.udp_port(r) == rig.GROUP[1])
+
+
+def test_a_packet_for_another_machine_wakes_no_service(idle):
+    """All services of a host are in one group, so each packet comes to all of
+    them; the kernel keeps those that are for another one."""
+    net = lcm.LCM(URL)
+    n = len(idle.name)
+
+    def left():
+        for channel in (f"EDM.{'x' * n}.COMMAND", f"EDM.{idle.name}.TRACE",
+                        f"EDM.{idle.name}.JOBS", f"EDM.{idle.name}.COMMAN"):
+            net.publish(channel, bytes(100))
+        return left_in_the_kernel(idle.jobs.pid) >= 40
+
+    idle.start_jobs()
+    until(left)
+    assert idle.client.ask("hello").code == 0
+    assert idle.end("jobs") == 0
+    assert "strange" not in (idle.folder / "edmd-jobs.log").read_text()

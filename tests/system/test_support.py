@@ -14,7 +14,7 @@ import time
 import pytest
 import rig
 from rig import QUICK_JOB, SLOW_JOB, key_file
-from test_store import degraded, failing, shim  # noqa: F401
+from test_store import degraded, failing  # noqa: F401
 
 FILES = {"README.txt", "versions.txt", "machine.ini", "doctor.txt",
          "latency.txt", "status.json", "snapshot.json", "checkpoint.json",

@@ -46,6 +46,7 @@ static inline struct interp_tech tech_of(double peak_a, double off_us,
 	t.v[INTERP_TECH_ON_US] = 8;
 	t.v[INTERP_TECH_OFF_US] = off_us;
 	t.v[INTERP_TECH_IGNITION_V] = 180;
+	t.v[INTERP_TECH_SERVO_V] = 2.5 * peak_a;
 	t.v[INTERP_TECH_POLARITY] = polarity;
 	return t;
 }
@@ -55,6 +56,7 @@ static inline struct cycle_config shop_config(const struct shop *s)
 	struct cycle_config k = usual_config(), of_file;
 
 	config_cycle(&s->c, &of_file);
+	k.gap.short_v = 10;
 	k.asking = of_file.asking;
 	k.asking.limited = true;
 	return k;

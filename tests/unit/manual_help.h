@@ -19,6 +19,7 @@ struct bench {
 	int32_t own_more;		/* the drives' own zero lies there */
 	int32_t index;			/* pulses from mark to mark */
 	int32_t limit_min, limit_max;
+	bool ends_told, ends_swapped;	/* at which end each is */
 	int32_t before[INTERP_NAXES];
 	int32_t most;			/* pulses in one period, of any axis */
 };
@@ -58,16 +59,26 @@ static inline bool passed(const struct bench *b, int i)
 	       floor((double)b->before[i] / b->index);
 }
 
+static inline void limit_is_on(struct bench *b, int i, bool high)
+{
+	b->in.limit |= 1u << i;
+	if (b->ends_told)
+		*(high ? &b->in.limit_high : &b->in.limit_low) |= 1u << i;
+}
+
 static inline void sense(struct bench *b)
 {
 	b->in.home = b->in.limit = b->in.index = 0;
+	b->in.limit_low = b->in.limit_high = 0;
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const int32_t at = b->out.target[i];
 
 		b->in.home |= at <= b->home[i] ? 1u << i : 0;
 		b->in.index |= passed(b, i) ? 1u << i : 0;
-		b->in.limit |= at < b->limit_min || at > b->limit_max ?
-			       1u << i : 0;
+		if (at < b->limit_min)
+			limit_is_on(b, i, b->ends_swapped);
+		if (at > b->limit_max)
+			limit_is_on(b, i, !b->ends_swapped);
 		b->in.actual[i] = b->in.stands_at[i] = at;
 		b->in.own[i] = at + b->own_more;
 	}

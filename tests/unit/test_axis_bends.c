@@ -23,8 +23,8 @@
 /* Of the limits. */
 #define MOST_A		1.05
 #define MOST_J		1.0
-/* Where the way is known that lines are cut from. */
-#define MOST_A_KNOWN	1.0
+/* Of lines that are cut from a way of the tip. */
+#define MOST_A_TIP	1.0
 /* Of the speed of waves no longer than two windows. */
 #define MOST_QUICK	1.15
 
@@ -398,13 +398,13 @@ static void so_do_ways_that_bend_quickly(void **st)
 static void arcs_of_a_leaning_tool_keep_the_limits(void **st)
 {
 	(void)st;
-	try(tip_arc, (struct most) { MOST_A_KNOWN, MOST_J });
+	try(tip_arc, (struct most) { MOST_A_TIP, MOST_J });
 }
 
 static void bodies_keep_the_limits(void **st)
 {
 	(void)st;
-	try(body, (struct most) { MOST_A_KNOWN, MOST_J });
+	try(body, (struct most) { MOST_A_TIP, MOST_J });
 }
 
 /* C at a peak of its rate, and A and C on bends, where the lines are long or
@@ -417,7 +417,7 @@ static void so_do_bodies_whose_bends_no_window_shows(void **st)
 	};
 
 	(void)st;
-	allowed = (struct most) { MOST_A_KNOWN, MOST_J };
+	allowed = (struct most) { MOST_A_TIP, MOST_J };
 	seen = (struct most) { 0, 0 };
 	for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++) {
 		uint64_t s = known[i];

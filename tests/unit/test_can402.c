@@ -1050,6 +1050,11 @@ static void the_load_is_that_of_longest_frames(void **st)
 	shared.plc_us = 5000;
 	assert_true(fabs(can402_load(&shared, 2000) - alone -
 			 (135 * (500 + 200) + 2 * 65 * 10) * 1e-6) < 1e-9);
+	/* Three that send their inputs, in frames of 97 bits. */
+	shared.plc_us = 0;
+	shared.inputs = 3;
+	assert_true(fabs(can402_load(&shared, 2000) - alone -
+			 3 * 95 * 500 * 1e-6) < 1e-9);
 	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
 		const struct can402_bus b = { .bitrate = 1000000,
 					      .axes = rows[i].axes,

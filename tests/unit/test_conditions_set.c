@@ -222,6 +222,29 @@ static void a_set_belongs_to_its_condition(void **state)
 	rig_free(&r);
 }
 
+/* Who sets a value while it lifts means what is cut, and not where the lift has
+ * come to. */
+static void a_set_in_a_retract_is_for_the_cut(void **state)
+{
+	const struct conds t = usual_conds();
+	struct rig r;
+
+	(void)state;
+	rig_conds(&r, &t);
+	cut_until(&r, 4.2);
+	check_c2(&r);
+	for (int i = 0; i < 1000 && place(&r) > 3.9; i++)
+		step(&r, SHORTED_V);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	check_c1(&r);
+	assert_int_equal(set(&r, INTERP_TECH_SERVO_V, 33), ANSWER_DONE);
+	assert_true(conditions_value(&r.c, INTERP_TECH_SERVO_V) == 33);
+	check_c1(&r);
+	cut_until(&r, 4.2);
+	assert_true(r.c.gap.servo_v == 33);
+	rig_free(&r);
+}
+
 static void a_set_that_cannot_be_leaves_all_as_it_was(void **state)
 {
 	static const struct {
@@ -309,6 +332,50 @@ static void polarity_is_the_sets_then_the_programs_then_the_conditions(void **s)
 	rig_free(&r);
 }
 
+/* What was cut negative is not cut positive after a retract over M3. */
+static void the_electrode_turns_round_on_the_way_back_too(void **state)
+{
+	const struct conds t = usual_conds();
+	struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct rig r;
+
+	(void)state;
+	cut_in(b, -1, 2, &t.c2);
+	action(b, INTERP_AUX, INTERP_AUX_POWER_NEGATIVE);
+	action(b, INTERP_AUX, INTERP_AUX_POWER_NEGATIVE);
+	cut_in(b, -2, 2, &t.c2);
+	action(b, INTERP_AUX, INTERP_AUX_POWER_OFF);
+	action(b, INTERP_AUX, INTERP_AUX_POWER_POSITIVE);
+	cut_in(b, -4, 2, &t.c2);
+	rig_load(&r, b, &k);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	cut_until(&r, 2.5);
+	for (int i = 0; i < 5; i++) {
+		static const double to_mm[] = { 1.5, 0.5, 1.5, 0.2, 2.5 };
+		const double back_mm = place(&r) - to_mm[i];
+
+		if (back_mm > 0) {
+			assert_int_equal(tell(&r, CYCLE_HOLD), ANSWER_DONE);
+			while (r.c.mover.v_mm_s != 0 || r.c.hold.moving)
+				step(&r, SPARKING_V);
+			assert_int_equal(tell_mm(&r, CYCLE_RETRACT, back_mm),
+					 ANSWER_DONE);
+			for (int n = 0; n < 20000; n++) {
+				if (place(&r) <= to_mm[i] + 0.01)
+					break;
+				step(&r, OPEN_V);
+			}
+			steps(&r, OPEN_V, 500);
+			assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+		}
+		cut_until(&r, to_mm[i] + 0.1);
+		assert_int_equal(io_is_negative(&r.out),
+				 to_mm[i] > 1 && to_mm[i] < 2);
+	}
+	rig_free(&r);
+}
+
 static void a_damaged_condition_is_a_fault_and_no_value(void **state)
 {
 	const struct conds t = usual_conds();
@@ -330,7 +397,8 @@ static void a_damaged_condition_is_a_fault_and_no_value(void **state)
 	rig_free(&r);
 }
 
-/* A field that the cycle goes by is a setting, or asked of the generator. */
+/* A field that the cycle goes by is a setting, or asked of the generator; the
+ * servo's voltage may be both. */
 static void each_live_field_has_its_place(void **state)
 {
 	struct cycle_config k = usual_config();
@@ -342,8 +410,11 @@ static void each_live_field_has_its_place(void **state)
 		const enum interp_tech_id id = (enum interp_tech_id)i;
 		const double *at = process_setting(id, &k.gap, &k.jump);
 
-		assert_int_equal(at != NULL, i >= INTERP_NGENERATOR &&
-				 interp_tech_is_live(id));
+		assert_int_equal(at != NULL, interp_tech_is_live(id) &&
+				 (i >= INTERP_NGENERATOR ||
+				  process_is_setting(i)));
+		assert_int_equal(process_is_setting(i),
+				 i == INTERP_TECH_SERVO_V);
 		assert_true(at ? base.v[i] == *at : isnan(base.v[i]));
 	}
 }
@@ -356,9 +427,11 @@ int main(void)
 		cmocka_unit_test(window_integral_and_counts_are_the_conditions),
 		cmocka_unit_test(a_set_goes_over_and_is_taken_back),
 		cmocka_unit_test(a_set_belongs_to_its_condition),
+		cmocka_unit_test(a_set_in_a_retract_is_for_the_cut),
 		cmocka_unit_test(a_set_that_cannot_be_leaves_all_as_it_was),
 		cmocka_unit_test(the_list_of_sets_is_bounded),
 		cmocka_unit_test(polarity_is_the_sets_then_the_programs_then_the_conditions),
+		cmocka_unit_test(the_electrode_turns_round_on_the_way_back_too),
 		cmocka_unit_test(a_damaged_condition_is_a_fault_and_no_value),
 		cmocka_unit_test(each_live_field_has_its_place),
 	};

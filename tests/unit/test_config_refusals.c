@@ -163,7 +163,7 @@ static const struct refusal refusals[] = {
 	  "that does not have [axis.Z] brake = line", "or none" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[gpio]\n"
 	  "estop = 7\n", 6, 0, "gpio.estop with backend can402",
-	  "chip, brake_X ... brake_V and brake_ms" },
+	  "[generator] spark = line ..., watchdog_by and" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[gpio]\n"
 	  "encoder_X = 1 2\n", 6, 0, "gpio.encoder_X with backend can402",
 	  "chip, brake_X" },
@@ -250,6 +250,25 @@ static const struct refusal refusals[] = {
 	  "none of bit 0 to 15", "" },
 	{ MODBUS "modbus = /dev/ttyS0\non_us = register 1 bits 1 codes 2 4 8\n",
 	  6, 0, "has more codes than its lines or bits make", "" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "can_interface = can3\n", 7, 0,
+	  "generator.can_interface with interface modbus, which does not use "
+	  "it", "without it, or interface = can" },
+	{ MODBUS "modbus = 10.0.0.7:502\npeak_a = register 1\n"
+	  "modbus_baud = 9600\n", 7, 0,
+	  "generator.modbus_baud with 10.0.0.7:502, which does not use it",
+	  "modbus = a serial port" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
+	  "can_id = 1009\nmodbus_unit = 7\n", 6, 0,
+	  "generator.modbus_unit with interface can", "interface = modbus" },
+	{ "[machine]\nbackend = null\n[generator]\nsilent_ms = 100\n", 4, 0,
+	  "generator.silent_ms with interface none",
+	  "interface = can, modbus or plc" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1 within 0.1\n", 6,
+	  0, "has within, which is of a number that is told", "" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "told_peak_a = input 1 within 0\n", 7, 0,
+	  "within of what is told", "" },
 	{ MODBUS "modbus = /dev/ttyS0\npolarity = register 1 bits 2\n", 6, 0,
 	  "is of a field that is on or off", "bit N" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = input 1\n", 6, 0,
@@ -398,6 +417,19 @@ static const struct refusal refusals[] = {
 	  "has a weight that is not above 0", "weights 3 6 12" },
 	{ "[machine]\nbackend = null\n[generator]\nby_hand = none on_us\n",
 	  4, 0, "generator.by_hand has \"none\"", "peak_a on_us off_us" },
+	/* The machine file's own, for a condition that gives none. */
+	{ ADC_MACHINE "[gap]\nsource = voltage\nservo_v = 45\n"
+	  "[generator]\ninterface = can\ncan_id = 500\n"
+	  "servo_v = can 501 byte 0 bits 8 scale 0.1\n", 33, 0,
+	  "gap.servo_v 45 V does not reach the generator",
+	  "0.1 to 25.4 V; or another [generator] servo_v" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
+	  "can_id = 100\nservo_v = can 100 byte 7\n", 6, 0,
+	  "\"can 100 byte 7\" goes beyond the eighth byte",
+	  "can ID byte N" },
+	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
+	  "can_id = 100\nservo_v = can 100 byte 5\n", 6, 0,
+	  "have bits of frame 100 in common", "a place of its own" },
 	{ MODBUS "modbus = 127.0.0.1:502\nmodbus_unit = 248\n"
 	  "peak_a = register 1\n", 6, 0,
 	  "generator.modbus_unit 248 over TCP", "1 to 247, 0 or 255" },
@@ -417,8 +449,6 @@ static const struct refusal refusals[] = {
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
 	  "drive_increments = 1000000\n", 6, 0,
 	  "its travel reaches to 200000000000", "within 2147483647" },
-	{ "[gap]\nsource = lines\n", 2, 0,
-	  "gap.source lines on backend sim", "source = sim or shares" },
 	{ "[machine]\nperiod_us = 0.5\n", 2, 0,
 	  "machine.period_us 0.5 us is too short", "20 us and more" },
 	{ "[axis.X]\npresent=no\n[axis.Y]\npresent=no\n[axis.Z]\npresent=no\n"

@@ -29,7 +29,7 @@ static void every_file_that_is_built_in_is_read(void **state)
 				 diag.column, diag.found, diag.wanted);
 		interp_dialect_free(d);
 	}
-	assert_int_equal(n, 18);
+	assert_int_equal(n, 19);
 	assert_ptr_equal(interp_dialect_by_name("sodick"),
 			 interp_dialect_by_name("sodick-wire"));
 }

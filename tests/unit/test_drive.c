@@ -33,6 +33,10 @@ struct peer {
 	uint32_t rpdo[2], tpdo[3], beat_ms, master_beat;
 	uint8_t time_value;
 	int8_t time_index;
+	uint32_t window;		/* 6065 */
+	uint8_t polarity;		/* 607E, of one byte: its count has the
+					 * other sign */
+	uint32_t given_up;		/* SDO transfers that were aborted */
 };
 
 static struct drive_config config(void)
@@ -93,6 +97,12 @@ static void peer_write(struct peer *p, const uint8_t *d)
 		break;
 	case 0x600700: p->abort_option = x; break;
 	case 0x606000: p->mode = (uint8_t)x; break;
+	case 0x606500: p->window = x; break;
+	case 0x607e00:
+		if (p->polarity != (uint8_t)x)
+			p->actual = p->latched = p->target = -p->actual;
+		p->polarity = (uint8_t)x;
+		break;
 	case 0x60c201: p->time_value = (uint8_t)x; break;
 	case 0x60c202: p->time_index = (int8_t)x; break;
 	default: break;
@@ -109,6 +119,8 @@ static uint32_t peer_read(const struct peer *p, uint32_t at)
 	case 0x140001: return 0x200 + NODE;
 	case 0x180001: return p->cob;
 	case 0x60c201: return p->time_value;
+	case 0x606500: return p->window;
+	case 0x607e00: return p->polarity;
 	case 0x60c202: return (uint8_t)p->time_index;
 	default: return at >> 8 >= 0x1400 && at >> 8 < 0x1900 ? 0x80000000u : 0;
 	}
@@ -136,15 +148,25 @@ static void sdo(struct peer *p, struct drive *d, const struct can_msg *m)
 	const uint32_t at = can_get(m->data + 1, 2) << 8 | m->data[3];
 
 	memcpy(a.data + 1, m->data + 1, 3);
+	if (m->data[0] == 0x80) {
+		p->given_up++;
+		return;
+	}
 	if (p->wide && at == 0x60c202) {
 		wide_index(p, m, &a);
 	} else if (at == p->refuses &&
 	    (p->code != 0x06010002 || m->data[0] != 0x40)) {
 		a.data[0] = 0x80;
 		can_put(a.data + 4, p->code ? p->code : 0x06020000, 4);
+	} else if (m->data[0] == 0x40 && at == 0x100800) {
+		a.data[0] = 0x41;
+		can_put(a.data + 4, 11, 4);
 	} else if (m->data[0] == 0x40) {
-		a.data[0] = 0x43;
+		a.data[0] = at == 0x607e00 ? 0x4f : 0x43;
 		can_put(a.data + 4, peer_read(p, at), 4);
+	} else if (at == 0x607e00 && m->data[0] != 0x2f) {
+		a.data[0] = 0x80;
+		can_put(a.data + 4, 0x06070010, 4);
 	} else {
 		a.data[0] = 0x60;
 		peer_write(p, m->data);
@@ -982,6 +1004,309 @@ static void an_object_of_another_size_is_written_with_that_size(void **state)
 	}
 }
 
+static enum cia402_end object(struct rig *r, struct cia402_request q,
+			      int cycles)
+{
+	drive_object_ask(&r->d, &q);
+	run(r, cycles, 0);
+	return (enum cia402_end)r->d.object.end;
+}
+
+static void an_object_is_read_while_the_drive_runs(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	assert_int_equal(object(&r, (struct cia402_request) { .index = 0x6065 },
+				1), CIA402_NOT_UP);
+	enable(&r);
+	r.p.window = 2000;
+	assert_int_equal(object(&r, (struct cia402_request) { .index = 0x6065 },
+				3), CIA402_DONE);
+	assert_int_equal(r.d.object.now, 2000);
+	assert_int_equal(r.d.object.bytes, 4);
+	assert_int_equal(object(&r, (struct cia402_request) { .index = 0x607e },
+				3), CIA402_DONE);
+	assert_int_equal(r.d.object.bytes, 1);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	assert_int_equal(r.d.malformed, 0);
+}
+
+static void an_object_is_set_with_the_size_it_has_and_read_back(void **state)
+{
+	const struct cia402_request q = { .index = 0x6065, .sets = true,
+					  .value = 1500 };
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	run(&r, 80, 0);
+	r.p.window = 2000;
+	assert_int_equal(object(&r, q, 4), CIA402_DONE);
+	assert_int_equal(r.p.window, 1500);
+	assert_int_equal(r.d.object.was, 2000);
+	assert_int_equal(r.d.object.now, 1500);
+}
+
+static void what_moves_an_axis_is_not_set(void **state)
+{
+	static const uint16_t own[] = {
+		0x6040, 0x607a, 0x6060, 0x60c2, 0x1016, 0x1400, 0x1a00, 0x6007
+	};
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	for (size_t i = 0; i < sizeof(own) / sizeof(own[0]); i++)
+		assert_int_equal(object(&r, (struct cia402_request) {
+			.index = own[i], .sub = 1, .sets = true }, 5),
+			CIA402_OWN);
+	assert_int_equal(object(&r, (struct cia402_request) {
+		.index = 0x6065, .sets = true }, 5), CIA402_POWERED);
+	assert_int_equal(r.p.window, 0);
+	r.d.c.leave[r.d.c.nleaves++] = 0x1016;
+	assert_int_equal(object(&r, (struct cia402_request) {
+		.index = 0x1016, .sub = 1, .sets = true }, 5), CIA402_POWERED);
+}
+
+/* Between the look at the object and the write. */
+static void power_that_comes_meanwhile_ends_a_set(void **state)
+{
+	const struct cia402_request q = { .index = 0x6065, .sets = true,
+					  .value = 1500 };
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	run(&r, 80, 0);
+	drive_set_zero(&r.d, 0);
+	r.p.deaf = true;
+	assert_int_equal(object(&r, q, 1), CIA402_UNDER_WAY);
+	r.p.deaf = false;
+	drive_aim(&r.d, DRIVE_GO_ON);
+	run(&r, 60, 0);
+	assert_int_equal(r.d.object.end, CIA402_POWERED);
+	assert_int_equal(r.p.window, 0);
+}
+
+static void a_refusal_silence_and_a_long_object_are_told(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.refuses = 0x606500;
+	r.p.code = 0x06010001;
+	assert_int_equal(object(&r, (struct cia402_request) { .index = 0x6065 },
+				3), CIA402_ABORTED);
+	assert_int_equal(r.d.object.code, 0x06010001);
+	assert_int_equal(object(&r, (struct cia402_request) { .index = 0x1008 },
+				4), CIA402_LONG);
+	assert_int_equal(r.p.given_up, 1);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	drive_aim(&r.d, DRIVE_GO_OFF);
+	r.p.deaf = true;
+	assert_int_equal(object(&r, (struct cia402_request) { .index = 0x6064 },
+				160), CIA402_SILENT);
+}
+
+static void a_set_that_changes_the_count_loses_the_place(void **state)
+{
+	const struct cia402_request q = { .index = 0x607e, .sets = true,
+					  .value = 0x80 };
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	run(&r, 80, 0);
+	drive_set_zero(&r.d, 0);
+	assert_int_equal(object(&r, (struct cia402_request) {
+		.index = 0x6065, .sets = true, .value = 5 }, 8), CIA402_DONE);
+	assert_false(r.d.lost);
+	assert_int_equal(object(&r, q, 8), CIA402_DONE);
+	assert_true(r.d.lost);
+}
+
+/* The set-up is the one that talks to the drive then. */
+static void a_set_up_ends_what_is_asked(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	run(&r, 80, 0);
+	r.p.deaf = true;
+	assert_int_equal(object(&r, (struct cia402_request) { .index = 0x6065 },
+				2), CIA402_UNDER_WAY);
+	drive_setup_again(&r.d);
+	assert_int_equal(r.d.object.end, CIA402_NOT_UP);
+	r.p.deaf = false;
+	r.p.operational = false;
+	run(&r, 80, 0);
+	assert_int_equal(r.d.phase, DRIVE_RUNNING);
+	assert_int_equal(r.d.malformed, 0);
+}
+
+static void the_last_emergencies_are_kept(void **state)
+{
+	struct can_msg m = { .id = CAN_EMCY + NODE, .len = 8,
+			     .data = { 0x10, 0x23, 0x03, 1, 2, 3, 4, 5 } };
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	for (int i = 0; i < CIA402_EMERGENCIES + 3; i++) {
+		m.data[3] = (uint8_t)i;
+		drive_receive(&r.d, &m);
+	}
+	assert_int_equal(r.d.came, CIA402_EMERGENCIES + 3);
+	assert_int_equal(r.d.history[2].maker[0], CIA402_EMERGENCIES + 2);
+	assert_int_equal(r.d.history[2].maker[4], 5);
+	assert_int_equal(r.d.history[3].maker[0], 3);
+	assert_string_equal(cia402_emergency_text(0x2310),
+			    "continuous over-current, output side");
+	assert_string_equal(cia402_emergency_text(0x2319),
+			    "continuous over-current, output side");
+	assert_string_equal(cia402_emergency_text(0x2399),
+			    "current, output side");
+	assert_string_equal(cia402_emergency_text(0xff42), "maker's own");
+	assert_string_equal(cia402_emergency_text(0x0042), "code of the maker");
+}
+
+static void objects_have_numbers_and_names(void **state)
+{
+	static const struct {
+		const char *text;
+		uint16_t index;
+		uint8_t sub;
+	} good[] = {
+		{ "6064", 0x6064, 0 }, { "0x6064", 0x6064, 0 },
+		{ "60C2:2", 0x60c2, 2 }, { "1018:0x4", 0x1018, 4 },
+		{ "position actual value", 0x6064, 0 },
+		{ "Position-Actual_Value", 0x6064, 0 },
+		{ "DC link circuit voltage", 0x6079, 0 },
+	};
+	static const char *const bad[] = {
+		"", "60642", "6064:", "6064:256", "6064 1", "position",
+		"position actual values", ":1",
+	};
+	uint16_t index;
+	uint8_t sub;
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++) {
+		assert_true(cia402_object_read(good[i].text, &index, &sub));
+		assert_int_equal(index, good[i].index);
+		assert_int_equal(sub, good[i].sub);
+	}
+	for (size_t i = 0; i < sizeof(bad) / sizeof(bad[0]); i++)
+		assert_false(cia402_object_read(bad[i], &index, &sub));
+	for (size_t i = 0; cia402_object_row(i); i++) {
+		const struct cia402_object *o = cia402_object_row(i);
+
+		assert_true(cia402_object_read(o->name, &index, &sub));
+		assert_ptr_equal(cia402_object_at(index, sub), o);
+	}
+}
+
+static void one_without_mode_8_follows_in_mode_7(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r);
+	r.d.c.interpolates = true;
+	r.p.modes = 0x65;
+	run(&r, 80, 0);
+	assert_int_equal(r.d.phase, DRIVE_RUNNING);
+	assert_int_equal(r.p.rpdo[1], 0x60c10120);
+	assert_int_equal(r.p.mode, 7);
+	drive_set_zero(&r.d, 0);
+	drive_aim(&r.d, DRIVE_GO_ON);
+	run(&r, 20, 0);
+	assert_true(r.d.led);
+	assert_int_equal(r.p.control, 0x1f);
+	r.d.joined = true;
+	for (int32_t at = 0; at <= 700; at += 7) {
+		beat(&r.d);
+		period(&r.d, &r.p, at);
+	}
+	run(&r, 4, 700);
+	assert_int_equal(r.p.actual, 123456 + 7000);
+	drive_aim(&r.d, DRIVE_GO_STOP);
+	run(&r, 1, 700);
+	assert_int_equal(r.p.control, 0x02);
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+}
+
+/* Its home is 5 increments before the place where it comes to stand. */
+static void home_period(struct rig *r, uint32_t *runs, bool asked)
+{
+	struct peer *p = &r->p;
+
+	if (p->mode == 6 && p->control == 0x1f) {
+		(*runs)++;
+		p->status = *runs > 30 ? 0x1027 : 0x0027;
+	}
+	if (*runs == 30)
+		p->actual = p->latched = p->target = 5;
+	drive_home_ask(&r->d, asked);
+	run(r, 1, 70);
+}
+
+static void a_drive_homes_and_stands_where_it_was_sent(void **state)
+{
+	uint32_t runs = 0, left = 0;
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.d.c.homes = true;
+	r.d.c.home_cycles = 1000;
+	r.d.c.enable_cycles = 200;
+	r.p.target = r.p.latched = r.p.actual = 123456 + 700;
+	r.d.c.following_max = 0;
+	run(&r, 3, 70);
+	for (int i = 0; i < 400 && r.d.homed_now != DRIVE_HOMED; i++) {
+		home_period(&r, &runs, true);
+		left += r.d.state != DRIVE_ENABLED;
+	}
+	assert_true(left > 2);		/* its mode changed without torque */
+	for (int i = 0; i < 100 && drive_is_homing(&r.d); i++)
+		home_period(&r, &runs, true);
+	assert_false(drive_is_homing(&r.d));
+	assert_int_equal(r.d.trouble, DRIVE_WELL);
+	assert_int_equal(r.p.mode, 8);
+	assert_int_equal(drive_place(&r.d), 70);
+	assert_int_equal(drive_own_place(&r.d), 1);
+	run(&r, 5, 70);
+	assert_int_equal(r.p.actual, 5);
+	home_period(&r, &runs, false);
+	assert_int_equal(r.d.homed_now, DRIVE_NOT_HOMED);
+}
+
+static void one_that_goes_silent_while_it_homes_homes_no_more(void **state)
+{
+	uint32_t runs = 0;
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.d.c.homes = true;
+	r.d.c.home_cycles = 1000;
+	r.d.c.enable_cycles = 200;
+	for (int i = 0; i < 60; i++)
+		home_period(&r, &runs, true);
+	assert_true(runs > 0 && drive_is_homing(&r.d));
+	r.p.mute = true;
+	for (int i = 0; i < 10; i++)
+		home_period(&r, &runs, true);
+	assert_int_equal(r.d.trouble, DRIVE_NO_ANSWER);
+	assert_false(drive_is_homing(&r.d));
+	assert_int_equal(r.d.homed_now, DRIVE_UNFOUND);
+}
+
 static void what_no_brake_holds_is_not_let_go(void **state)
 {
 	struct rig r;
@@ -1082,6 +1407,19 @@ int main(void)
 		cmocka_unit_test(one_stopped_by_nmt_is_trouble),
 		cmocka_unit_test(the_period_is_told_in_a_unit_the_drive_has),
 		cmocka_unit_test(an_object_of_another_size_is_written_with_that_size),
+		cmocka_unit_test(an_object_is_read_while_the_drive_runs),
+		cmocka_unit_test(an_object_is_set_with_the_size_it_has_and_read_back),
+		cmocka_unit_test(what_moves_an_axis_is_not_set),
+		cmocka_unit_test(power_that_comes_meanwhile_ends_a_set),
+		cmocka_unit_test(a_refusal_silence_and_a_long_object_are_told),
+		cmocka_unit_test(a_set_that_changes_the_count_loses_the_place),
+		cmocka_unit_test(a_set_up_ends_what_is_asked),
+		cmocka_unit_test(the_last_emergencies_are_kept),
+		cmocka_unit_test(objects_have_numbers_and_names),
+		cmocka_unit_test(one_without_mode_8_follows_in_mode_7),
+		cmocka_unit_test(a_drive_homes_and_stands_where_it_was_sent),
+		cmocka_unit_test(
+			one_that_goes_silent_while_it_homes_homes_no_more),
 		cmocka_unit_test(what_no_brake_holds_is_not_let_go),
 		cmocka_unit_test(a_billion_pulses_do_not_drift),
 		cmocka_unit_test(bits_are_those_of_the_standard),

@@ -253,6 +253,31 @@ static void few_points_a_cycle_lead_over_the_same_points(void **st)
 	end(&t);
 }
 
+/* The axes beside the path brake less than those of the path: what is left of
+ * the feed must not lead back onto it. */
+static void softer_axes_beside_the_path_are_still_the_way_out(void **st)
+{
+	const struct interp_escape e = ring_escape();
+	struct cycle_config k = jumping();
+	struct interp_escape *soft;
+	struct beside t;
+
+	(void)st;
+	k.gap.feed_a_mm_s2 = 0;
+	begin_with(&t, &k, &e);
+	soft = (struct interp_escape *)(uintptr_t)t.r.c.cursor.p.escapes;
+	for (uint32_t i = 0; i < t.r.c.cursor.p.head->nescapes; i++)
+		soft[i].a_max_mm_s2 = 10;
+	for (double at_mm = ON_RING; at_mm < ON_RING + 0.5; at_mm += 0.05) {
+		jump_at(&t, at_mm);
+		t.w.beside = 0;
+		while (t.r.c.state == STATE_JUMP)
+			step(&t.r, OPEN_V);
+		assert_true(t.w.beside > 0);
+	}
+	end(&t);
+}
+
 static void a_higher_jump_ends_where_the_escape_does(void **st)
 {
 	struct cycle_config k = jumping();
@@ -500,14 +525,15 @@ static void after_a_crash_every_point_of_it_is_found_again(void **st)
 	(void)st;
 	jump_on_ring(&t, &k);
 	while (t.r.c.state == STATE_JUMP) {
+		const int32_t *at = place_pos(&t.r.c);
 		struct cycle c = t.r.c;
 		int32_t wrong[INTERP_NAXES];
 
-		assert_true(escape_find(&c, t.r.c.escape.pos));
+		assert_true(escape_find(&c, at));
 		assert_near(c.escape.way_mm, t.r.c.escape.way_mm, 1.8e-3);
-		assert_memory_equal(c.out.target, t.r.c.escape.pos,
+		assert_memory_equal(c.out.target, at,
 				    sizeof(c.out.target));
-		memcpy(wrong, t.r.c.escape.pos, sizeof(wrong));
+		memcpy(wrong, at, sizeof(wrong));
 		wrong[INTERP_C]++;
 		assert_false(escape_find(&c, wrong));
 		assert_false(escape_is_out(&c.escape));
@@ -554,6 +580,7 @@ int main(void)
 		cmocka_unit_test(the_path_is_the_same_with_and_without_escapes),
 		cmocka_unit_test(speed_and_acceleration_keep_their_limits_and_corners_are_stood_on),
 		cmocka_unit_test(few_points_a_cycle_lead_over_the_same_points),
+		cmocka_unit_test(softer_axes_beside_the_path_are_still_the_way_out),
 		cmocka_unit_test(a_higher_jump_ends_where_the_escape_does),
 		cmocka_unit_test(a_hold_in_any_cycle_stays_on_the_legs_and_start_comes_back),
 		cmocka_unit_test(an_e_stop_in_any_cycle_ends_motion_and_start_comes_back),

@@ -28,22 +28,29 @@ static struct forecast forecast_of(double first_s, double second_s)
 
 		p->to_mm = i + 1;
 		p->cond = i < 60 ? 1 : 2;
-		p->cut_s = i < 10 ? 0 : i < 60 ? first_s : second_s;
+		p->cut_s[FORECAST_ALL] = i < 10 ? 0 : i < 60 ? first_s :
+					 second_s;
+		p->cut_s[FORECAST_HALF] = 2 * *p->cut_s;
+		p->cut_s[FORECAST_TWICE] = *p->cut_s / 2;
 		p->other_s = i < 10 ? 0.1 : i == 40 ? 30 : 0;
-		f.cut_s += p->cut_s;
+		f.cut_s += *p->cut_s;
 		f.other_s += p->other_s;
 	}
 	return f;
 }
 
-static struct eta ready(double first_s, double second_s)
+static struct eta give(struct forecast f)
 {
-	struct forecast f = forecast_of(first_s, second_s);
 	struct eta l = { .n = 0 };
 
 	assert_int_equal(eta_give(&l, &f, 7), 0);
 	assert_null(f.part);
 	return l;
+}
+
+static struct eta ready(double first_s, double second_s)
+{
+	return give(forecast_of(first_s, second_s));
 }
 
 static struct eta_told told(const struct eta *l)
@@ -54,7 +61,13 @@ static struct eta_told told(const struct eta *l)
 	return t;
 }
 
-/* Go on to @to_mm, where the cut takes @a and @b times what was forecast. */
+/* A place belongs to the part that ends there. */
+static double past(double mm)
+{
+	return mm + 1e-6;
+}
+
+/* Go on past @to_mm, where the cut takes @a and @b times what was forecast. */
 static double go(struct eta *l, double from_s, double to_mm, double a, double b)
 {
 	double s = from_s;
@@ -62,8 +75,8 @@ static double go(struct eta *l, double from_s, double to_mm, double a, double b)
 	for (uint32_t i = l->at; i < to_mm; i++) {
 		const struct forecast_part *p = &l->forecast.part[i];
 
-		s += p->other_s + p->cut_s * (p->cond == 1 ? a : b);
-		eta_look(l, i + 1, s);
+		s += p->other_s + *p->cut_s * (p->cond == 1 ? a : b);
+		eta_look(l, past(i + 1), s);
 	}
 	return s;
 }
@@ -91,6 +104,26 @@ static void what_is_positioned_has_no_factor(void **state)
 	go(&l, 0, 10, 1, 1);
 	assert_float_equal(told(&l).left_s, 690, 1e-6);
 	assert_int_equal(told(&l).by, ETA_FORECAST);
+	eta_fini(&l);
+}
+
+/* A changer that takes an hour says nothing of the process. */
+static void a_wait_is_no_time_of_the_job(void **state)
+{
+	struct eta l = ready(10, 4);
+	double s, left_s;
+
+	(void)state;
+	s = go(&l, 0, 30, 1, 1);
+	left_s = told(&l).left_s;
+	for (int i = 0; i < 60; i++) {
+		s += 60;
+		eta_wait(&l, s);
+		eta_look(&l, past(30), s);
+		assert_float_equal(told(&l).left_s, left_s, 1e-6);
+	}
+	go(&l, s, 31, 1, 1);
+	assert_float_equal(told(&l).left_s, left_s - 10, 1e-6);
 	eta_fini(&l);
 }
 
@@ -134,7 +167,7 @@ static void a_dwell_counts_down(void **state)
 	(void)state;
 	s = go(&l, 0, 40, 1, 1);
 	was = told(&l).left_s;
-	eta_look(&l, 40, s + 25);
+	eta_look(&l, past(40), s + 25);
 	assert_float_equal(told(&l).left_s, was - 25, 1e-6);
 	eta_fini(&l);
 }
@@ -150,11 +183,11 @@ static void a_stall_does_not_rise_at_once(void **state)
 	s = go(&l, 0, 30, 1, 1);
 	was = told(&l).left_s;
 	for (double more = 0; more <= 20; more++) {
-		eta_look(&l, 30, s + more);
+		eta_look(&l, past(30), s + more);
 		assert_true(told(&l).left_s <= was * 1.1);
 	}
 	assert_false(eta_rose(&l, &t));
-	eta_look(&l, 30, s + 300);
+	eta_look(&l, past(30), s + 300);
 	assert_true(told(&l).left_s > was * 1.1);
 	assert_true(eta_rose(&l, &t));
 	assert_false(eta_rose(&l, &t));	/* told once */
@@ -173,7 +206,7 @@ static void it_is_told_once_for_each_cause(void **state)
 	eta_look(&l, 0, 0);
 	for (int mm = 1; mm <= 40; mm++) {
 		s += 10 * (1 + mm / 5.0);
-		eta_look(&l, mm, s);
+		eta_look(&l, past(mm), s);
 		told_times += eta_rose(&l, &t);
 	}
 	assert_int_equal(told_times, 1);
@@ -199,6 +232,67 @@ static void what_was_learnt_is_where_it_begins(void **state)
 	eta_fini(&l);
 }
 
+/* Condition 1 is cut at the programmed feed, whatever the process removes. */
+static struct eta half_at_the_feed(void)
+{
+	struct forecast f = forecast_of(10, 10);
+
+	for (int i = 0; i < 60; i++)
+		f.part[i].cut_s[FORECAST_HALF] =
+		f.part[i].cut_s[FORECAST_TWICE] = *f.part[i].cut_s;
+	return give(f);
+}
+
+static void what_is_cut_at_the_feed_says_nothing_of_the_process(void **state)
+{
+	struct eta l = half_at_the_feed();
+	double s;
+
+	(void)state;
+	s = go(&l, 0, 50, 1.01, 1);
+	assert_float_equal(told(&l).left_s, 500, 10);
+	s = go(&l, s, 70, 1.01, 2);
+	assert_float_equal(told(&l).left_s, 600, 30);	/* truth: 600 */
+	/* An override slows all alike. */
+	eta_fini(&l);
+	l = half_at_the_feed();
+	go(&l, 0, 50, 2, 2);
+	assert_float_equal(told(&l).left_s, 1000, 60);
+	eta_fini(&l);
+}
+
+static void a_process_that_is_slower_leaves_what_is_cut_at_the_feed(
+	void **state)
+{
+	struct forecast f = forecast_of(10, 10);
+	struct eta l;
+
+	(void)state;
+	for (int i = 0; i < PARTS; i++) {
+		f.part[i].cond = i < 10 ? 0 : 1;
+		if (i >= 60)
+			f.part[i].cut_s[FORECAST_HALF] = *f.part[i].cut_s;
+	}
+	l = give(f);
+	go(&l, 0, 40, 2, 2);
+	assert_float_equal(told(&l).left_s, 30 + 400 + 400, 30);
+	eta_fini(&l);
+}
+
+static void a_dwell_at_the_end_of_the_cut_is_still_to_come(void **state)
+{
+	struct forecast f = forecast_of(10, 4);
+	struct eta l;
+
+	(void)state;
+	f.part[89].other_s = 60;
+	l = give(f);
+	go(&l, 0, 89, 1, 1);
+	eta_look(&l, 90, 0);
+	assert_true(told(&l).left_s >= 60);
+	eta_fini(&l);
+}
+
 /* A service that comes back in the middle of a job sees it for the first
  * time. */
 static void it_may_come_in_the_middle(void **state)
@@ -207,7 +301,7 @@ static void it_may_come_in_the_middle(void **state)
 	const double s = go(&a, 0, 50, 2, 2);
 
 	(void)state;
-	eta_look(&b, 50, s);
+	eta_look(&b, past(50), s);
 	assert_float_equal(told(&b).left_s, told(&a).left_s, 15);
 	eta_fini(&a);
 	eta_fini(&b);
@@ -246,12 +340,19 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(before_the_cut_it_is_the_forecast_and_a_range),
 		cmocka_unit_test(what_is_positioned_has_no_factor),
+		cmocka_unit_test(a_wait_is_no_time_of_the_job),
 		cmocka_unit_test(a_process_that_is_slower_is_noticed),
 		cmocka_unit_test(each_condition_has_its_own_factor),
 		cmocka_unit_test(a_dwell_counts_down),
 		cmocka_unit_test(a_stall_does_not_rise_at_once),
 		cmocka_unit_test(it_is_told_once_for_each_cause),
 		cmocka_unit_test(what_was_learnt_is_where_it_begins),
+		cmocka_unit_test(
+			what_is_cut_at_the_feed_says_nothing_of_the_process),
+		cmocka_unit_test(
+		a_process_that_is_slower_leaves_what_is_cut_at_the_feed),
+		cmocka_unit_test(
+			a_dwell_at_the_end_of_the_cut_is_still_to_come),
 		cmocka_unit_test(it_may_come_in_the_middle),
 		cmocka_unit_test(a_job_that_cuts_nothing_has_an_estimate),
 		cmocka_unit_test(without_a_forecast_there_is_none),

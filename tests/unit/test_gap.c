@@ -289,9 +289,16 @@ static void a_condition_s_ignition_voltage_sets_the_bound(void **st)
 	k.gap.ignition_v = 120;
 	cut_at(&r, &k, 2);
 	r.c.out.pulse[INTERP_TECH_IGNITION_V] = 200;
+	step(&r, 179);
+	step(&r, 299);
+	/* The pulses that are read are still those of before. */
+	r.c.out.pulse[INTERP_TECH_IGNITION_V] = 100;
 	step(&r, 299);
 	assert_int_equal(r.c.fault.first, FAULT_NONE);
-	step(&r, 301);
+	step(&r, 149);
+	step(&r, 149);
+	assert_int_equal(r.c.fault.first, FAULT_NONE);
+	step(&r, 151);
 	assert_int_equal(r.c.fault.first, FAULT_GAP_LOST);
 	rig_free(&r);
 }

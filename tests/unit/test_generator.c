@@ -3,107 +3,12 @@
  * test_generator.c - what is asked for as frames, what is told, and what of a
  * condition reaches the generator
  */
-#include "config_help.h"
-
-#include "generator_own.h"
+#include "generator_frames.h"
 
 #include <errno.h>
-#include <linux/can.h>
 #include <math.h>
-#include <string.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-struct rig {
-	struct machine_config c;
-	struct io_machine m;
-	struct io_inputs in;
-	struct io_outputs out;
-	int fd;
-	struct can_frame usual, own;	/* the last ones */
-	uint32_t frames;
-};
-
-static const char machine[] =
-	"[machine]\nbackend = null\nperiod_us = 1000\n"
-	"[generator]\ninterface = can\ncan_id = 1009\n"
-	"ignition_v = can 1010 byte 0 bits 12 scale 0.25\n"
-	"iso = can 1010 byte 1 bit 7\nsense = can 1010 byte 1 bit 6\n"
-	"silent_ms = 20\nconfirm_s = 0.05\n";
-
-static const char tells[] =
-	"told_peak_a = can 1011 byte 0 bits 8 scale 0.5\n"
-	"told_polarity = can 1011 byte 1 bit 0\n";
-
-static void make(struct rig *r, const char *more)
-{
-	struct interp_diag d;
-	char text[1024];
-	int fd[2];
-
-	memset(r, 0, sizeof(*r));
-	snprintf(text, sizeof(text), "%s%s", machine, more);
-	assert_int_equal(read_text(text, &r->c, &d), 0);
-	assert_int_equal(io_null_open(&r->m, &r->c, &d), 0);
-	assert_int_equal(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0,
-				    fd), 0);
-	assert_non_null(generator_attach(&r->m, &r->c, fd[0]));
-	r->fd = fd[1];
-	io_pulse_own(&r->out);
-}
-
-static void take_frames(struct rig *r)
-{
-	struct can_frame f;
-
-	while (read(r->fd, &f, sizeof(f)) == sizeof(f)) {
-		*(f.can_id == 1009 ? &r->usual : &r->own) = f;
-		r->frames++;
-	}
-}
-
-static void unmake(struct rig *r)
-{
-	r->m.close(r->m.self);
-	take_frames(r);
-	assert_int_equal(r->usual.data[0], 0);
-	close(r->fd);
-}
-
-static void tell(struct rig *r, uint8_t halves, bool negative)
-{
-	struct can_frame f = { .can_id = 1011, .can_dlc = 2 };
-
-	f.data[0] = halves;
-	f.data[1] = negative;
-	assert_int_equal(write(r->fd, &f, sizeof(f)), sizeof(f));
-}
-
-static void period(struct rig *r)
-{
-	r->m.read(r->m.self, &r->in);
-	r->m.write(r->m.self, &r->out);
-	r->out.reset = false;
-	take_frames(r);
-}
-
-static void ask(struct rig *r, double peak_a)
-{
-	r->out.pulse[INTERP_TECH_PEAK_A] = peak_a;
-	r->out.asked++;
-}
-
-static bool log_has(struct rig *r, const char *text)
-{
-	char line[160];
-	bool any = false;
-
-	while (r->m.note(r->m.self, line, sizeof(line)))
-		any = any || strstr(line, text);
-	return any;
-}
-
-/* 8 us, 20 us, 6 A, 180 V of the published experiment. */
+/* 8 us, 20 us, 6 A, servo 15 V, 180 V of the published experiment. */
 static void a_condition_reaches_it_whole(void **state)
 {
 	struct rig r;
@@ -114,6 +19,7 @@ static void a_condition_reaches_it_whole(void **state)
 	r.out.pulse[INTERP_TECH_ON_US] = 8;
 	r.out.pulse[INTERP_TECH_OFF_US] = 20;
 	r.out.pulse[INTERP_TECH_IGNITION_V] = 180;
+	r.out.pulse[INTERP_TECH_SERVO_V] = 15;
 	r.out.pulse[INTERP_TECH_POLARITY] = -1;
 	r.out.power = r.out.pump = true;
 	period(&r);
@@ -122,8 +28,9 @@ static void a_condition_reaches_it_whole(void **state)
 	assert_int_equal(can_get(r.usual.data + 2, 2), 60);
 	assert_int_equal(can_get(r.usual.data + 4, 2), 80);
 	assert_int_equal(can_get(r.usual.data + 6, 2), 200);
-	assert_int_equal(r.own.can_dlc, 2);
+	assert_int_equal(r.own.can_dlc, 4);
 	assert_int_equal(can_get(r.own.data, 2), 720);
+	assert_int_equal(can_get(r.own.data + 2, 2), 150);
 	r.out.pulse[INTERP_TECH_ISO] = 1;
 	r.out.sense = true;
 	r.out.pulse[INTERP_TECH_IGNITION_V] = NAN;
@@ -131,7 +38,7 @@ static void a_condition_reaches_it_whole(void **state)
 	period(&r);
 	assert_int_equal(can_get(r.own.data, 2), 0xcfff);
 	assert_int_equal(can_get(r.usual.data + 6, 2), 0xffff);
-	unmake(&r);
+	frames_close(&r);
 }
 
 static void what_changes_is_sent_at_once_and_all_of_it_again(void **state)
@@ -152,7 +59,41 @@ static void what_changes_is_sent_at_once_and_all_of_it_again(void **state)
 		period(&r);
 	assert_in_range(r.frames, 3 + 18, 3 + 20);
 	assert_in_range((uint8_t)(r.usual.data[1] - count), 10, 12);
-	unmake(&r);
+	frames_close(&r);
+}
+
+/* Its sparks may be a line's. */
+static void what_the_queue_does_not_take_is_not_in_force(void **state)
+{
+	const struct can_frame f = { 0 };
+	struct generator *g;
+	struct rig r;
+
+	(void)state;
+	make(&r, "settle_ms = 5\n");
+	g = r.m.self;
+	ask(&r, 6);
+	for (int i = 0; i < 10; i++)
+		period(&r);
+	assert_int_equal(r.in.generator.in_force, r.out.asked);
+	while (write(g->fd, &f, sizeof(f)) > 0)
+		;
+	ask(&r, 12);
+	for (int i = 0; i < 25; i++) {
+		r.m.write(r.m.self, &r.out);
+		r.m.read(r.m.self, &r.in);
+		assert_int_not_equal(r.in.generator.in_force, r.out.asked);
+		assert_int_equal(r.in.generator.trouble, i >= 20);
+	}
+	take_frames(&r);
+	for (int i = 0; i < 10; i++) {
+		period(&r);
+		assert_int_equal(r.in.generator.in_force == r.out.asked,
+				 i >= 5);
+	}
+	assert_int_equal(can_get(r.usual.data + 2, 2), 120);
+	assert_false(r.in.generator.trouble);
+	frames_close(&r);
 }
 
 static void what_it_tells_is_in_force_when_it_agrees(void **state)
@@ -160,7 +101,7 @@ static void what_it_tells_is_in_force_when_it_agrees(void **state)
 	struct rig r;
 
 	(void)state;
-	make(&r, tells);
+	make(&r, frames_tells);
 	ask(&r, 6);
 	for (int i = 0; i < 10; i++) {
 		tell(&r, 8, false);
@@ -171,7 +112,7 @@ static void what_it_tells_is_in_force_when_it_agrees(void **state)
 	period(&r);
 	assert_int_equal(r.in.generator.in_force, r.out.asked);
 	assert_false(r.in.generator.trouble);
-	unmake(&r);
+	frames_close(&r);
 }
 
 static void one_that_lies_is_trouble_in_its_period(void **state)
@@ -179,7 +120,7 @@ static void one_that_lies_is_trouble_in_its_period(void **state)
 	struct rig r;
 
 	(void)state;
-	make(&r, tells);
+	make(&r, frames_tells);
 	ask(&r, 6);
 	r.out.power = true;
 	period(&r);
@@ -201,7 +142,7 @@ static void one_that_lies_is_trouble_in_its_period(void **state)
 	tell(&r, 12, false);
 	period(&r);
 	assert_false(r.in.generator.trouble);
-	unmake(&r);
+	frames_close(&r);
 }
 
 /* The off time alone is on its way then. */
@@ -231,7 +172,7 @@ static void what_it_loses_in_a_step_against_arcs_is_seen_at_once(void **state)
 	assert_int_equal(r.usual.data[0], 0);
 	assert_true(log_has(&r, "peak_a was in force and is no more: asked 6, "
 				"told 12"));
-	unmake(&r);
+	frames_close(&r);
 }
 
 /* The place needs what was asked before the step. */
@@ -263,10 +204,12 @@ static void after_a_reset_it_has_nothing_until_it_tells_it(void **state)
 		period(&r);
 		assert_true((int32_t)(r.in.generator.in_force - needed) < 0);
 	}
-	tell(&r, 12, false);
-	period(&r);
+	for (int i = 0; i < 20; i++) {
+		tell(&r, 12, false);
+		period(&r);
+	}
 	assert_int_equal(r.in.generator.in_force, r.out.asked);
-	unmake(&r);
+	frames_close(&r);
 }
 
 static int periods_until_in_force(struct rig *r, uint8_t halves)
@@ -292,12 +235,13 @@ static void what_it_does_not_tell_has_settle_ms(void **state)
 	r.out.pulse[INTERP_TECH_ON_US] = 8;
 	assert_int_equal(periods_until_in_force(&r, 12), 30);
 	ask(&r, 9);
-	assert_int_equal(periods_until_in_force(&r, 18), 1);
+	period(&r);
+	assert_int_equal(periods_until_in_force(&r, 18), 0);
 	ask(&r, 6);
 	r.out.pulse[INTERP_TECH_IGNITION_V] = 180;
 	assert_int_equal(periods_until_in_force(&r, 12), 30);
 	assert_false(r.in.generator.trouble);
-	unmake(&r);
+	frames_close(&r);
 }
 
 static void one_that_refuses_is_trouble_in_confirm_s(void **state)
@@ -306,7 +250,7 @@ static void one_that_refuses_is_trouble_in_confirm_s(void **state)
 	int n = 0;
 
 	(void)state;
-	make(&r, tells);
+	make(&r, frames_tells);
 	tell(&r, 12, false);
 	period(&r);
 	ask(&r, 9);
@@ -317,7 +261,7 @@ static void one_that_refuses_is_trouble_in_confirm_s(void **state)
 	assert_in_range(n, 50, 53);
 	assert_true(log_has(&r, "peak_a is not in force in confirm_s: asked 9, "
 				"told 6"));
-	unmake(&r);
+	frames_close(&r);
 }
 
 static void one_that_is_silent_is_trouble_in_silent_ms(void **state)
@@ -326,7 +270,7 @@ static void one_that_is_silent_is_trouble_in_silent_ms(void **state)
 	int n = 0;
 
 	(void)state;
-	make(&r, tells);
+	make(&r, frames_tells);
 	ask(&r, 6);
 	period(&r);
 	tell(&r, 12, false);
@@ -335,7 +279,7 @@ static void one_that_is_silent_is_trouble_in_silent_ms(void **state)
 		period(&r);
 	assert_in_range(n, 19, 22);
 	assert_true(log_has(&r, "it does not tell its peak_a any more"));
-	unmake(&r);
+	frames_close(&r);
 }
 
 /* It comes back with its own settings, another polarity among them. */
@@ -344,7 +288,7 @@ static void one_that_restarts_is_trouble(void **state)
 	struct rig r;
 
 	(void)state;
-	make(&r, tells);
+	make(&r, frames_tells);
 	ask(&r, 6);
 	r.out.pulse[INTERP_TECH_POLARITY] = -1;
 	period(&r);
@@ -356,7 +300,7 @@ static void one_that_restarts_is_trouble(void **state)
 	assert_true(r.in.generator.trouble);
 	assert_true(log_has(&r, "polarity was in force and is no more: asked "
 				"-1, told 1"));
-	unmake(&r);
+	frames_close(&r);
 }
 
 static void what_is_asked_anew_is_judged_anew(void **state)
@@ -364,7 +308,7 @@ static void what_is_asked_anew_is_judged_anew(void **state)
 	struct rig r;
 
 	(void)state;
-	make(&r, tells);
+	make(&r, frames_tells);
 	ask(&r, 6);
 	period(&r);
 	tell(&r, 12, false);
@@ -376,13 +320,9 @@ static void what_is_asked_anew_is_judged_anew(void **state)
 			 1u << INTERP_TECH_POLARITY);
 	assert_true(r.in.generator.told[INTERP_TECH_PEAK_A] == 12);
 	ask(&r, 12);
-	tell(&r, 24, false);
-	period(&r);
-	tell(&r, 24, false);
-	period(&r);
+	assert_in_range(periods_until_in_force(&r, 24), 20, 21);
 	assert_false(r.in.generator.trouble);
-	assert_int_equal(r.in.generator.in_force, r.out.asked);
-	unmake(&r);
+	frames_close(&r);
 }
 
 static void tell_sums(struct rig *r, uint16_t sparks, uint16_t mj,
@@ -423,7 +363,7 @@ static void sums_run_on_and_only_up(void **state)
 	tell_sums(&r, 50010, 100, 0);
 	assert_true(says->told[PROCESS_SPARKS] == 1010);
 	assert_true(isnan(says->told[PROCESS_ARCS]));
-	unmake(&r);
+	frames_close(&r);
 }
 
 /* What comes in the dark is of the sparks before it: none of it is lost. */
@@ -444,7 +384,25 @@ static void energy_is_handed_on_with_the_sparks(void **state)
 	period(&r);
 	assert_true(fabs(sum_j + r.in.energy_j - 0.08) < 1e-9);
 	assert_true(fabs(r.in.generator.told[PROCESS_ENERGY_J] - 0.08) < 1e-9);
-	unmake(&r);
+	frames_close(&r);
+}
+
+/* It may tell what it had before it was asked for the one on its way. */
+static void one_that_comes_back_to_what_it_tells_has_settle_ms(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	make(&r, frames_tells);
+	ask(&r, 6);
+	period(&r);
+	assert_int_equal(periods_until_in_force(&r, 12), 0);
+	ask(&r, 9);
+	period(&r);
+	ask(&r, 6);
+	period(&r);
+	assert_in_range(periods_until_in_force(&r, 12), 19, 20);
+	frames_close(&r);
 }
 
 static void its_own_fault_is_trouble_until_it_is_gone_and_reset(void **state)
@@ -469,7 +427,7 @@ static void its_own_fault_is_trouble_until_it_is_gone_and_reset(void **state)
 	period(&r);
 	tell_sums(&r, 0, 0, 0);
 	assert_false(r.in.generator.trouble);
-	unmake(&r);
+	frames_close(&r);
 }
 
 /* -- What of a condition is delivered -------------------------------------- */
@@ -510,7 +468,19 @@ static const struct {
 	{ "[generator]\ninterface = can\ncan_id = 500\n",
 	  INTERP_TECH_OFF_US, 6554, "C1: off_us 6554 us", "0.1 to 6553.4 us" },
 	{ "[generator]\ninterface = can\ncan_id = 500\n",
+	  INTERP_TECH_ON_US, 8, "", "" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n",
 	  INTERP_TECH_IGNITION_V, 180, "ignition_v 180 V", "" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n"
+	  "ignition_v = can 501 byte 0\n", INTERP_TECH_IGNITION_V, 180, "",
+	  "" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n",
+	  INTERP_TECH_ISO, 1, "iso 1", "[generator] iso" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n"
+	  "iso = can 501 byte 2 bit 0\n", INTERP_TECH_ISO, 1, "", "" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n"
+	  "ignition_v = dac dac1 voltage0 scale 30 to 10\n",
+	  INTERP_TECH_IGNITION_V, 310, "ignition_v 310 V", "300 V" },
 	{ BY_LINES
 	  "peak_a = lines 20 21 26 weights 3 6 12\n",
 	  INTERP_TECH_PEAK_A, 7, "", "" },
@@ -521,6 +491,31 @@ static const struct {
 	  INTERP_TECH_ON_US, 20, "on_us 20 us", "2 4 8 us" },
 	{ BY_LINES "polarity = line 20\n",
 	  INTERP_TECH_POLARITY, -1, "", "" },
+	{ BY_LINES "off_us = lines 20 21 codes 10 20 50\n",
+	  INTERP_TECH_OFF_US, 20, "", "" },
+	{ BY_LINES "ignition_v = lines 20 codes 90 180\n",
+	  INTERP_TECH_IGNITION_V, 180, "", "" },
+	{ BY_LINES "ignition_v = lines 20 codes 90 180\n",
+	  INTERP_TECH_IGNITION_V, 250, "ignition_v 250 V", "90 180 V" },
+	{ BY_LINES "servo_v = lines 20 21 codes 15 30 45\n",
+	  INTERP_TECH_SERVO_V, 15, "", "" },
+	{ BY_LINES "servo_v = lines 20 21 codes 15 30 45\n",
+	  INTERP_TECH_SERVO_V, 50, "servo_v 50 V", "15 30 45 V" },
+	{ BY_LINES "iso = line 20\n", INTERP_TECH_SERVO_V, 50, "", "" },
+	{ BY_LINES "servo_v = dac dac1 voltage0 scale 10 to 5\n",
+	  INTERP_TECH_SERVO_V, 51, "servo_v 51 V", "0.1 to 50 V" },
+	{ "[generator]\ninterface = can\ncan_id = 500\n"
+	  "servo_v = can 501 byte 0 scale 0.1\n", INTERP_TECH_SERVO_V, 15,
+	  "", "" },
+	{ "[generator]\nby_hand = servo_v\n", INTERP_TECH_SERVO_V, 15, "", "" },
+	{ MODBUS "servo_v = register 6 bits 9 scale 0.1\n",
+	  INTERP_TECH_SERVO_V, 15, "", "" },
+	{ MODBUS "servo_v = register 6 bits 9 scale 0.1\n",
+	  INTERP_TECH_SERVO_V, 60, "servo_v 60 V", "0.1 to 51.1 V" },
+	{ BY_PLC "servo_v = plc\n", INTERP_TECH_SERVO_V, 15, "", "" },
+	{ BY_LINES "iso = line 20\n", INTERP_TECH_ISO, 1, "", "" },
+	{ BY_LINES "iso = line 20\n", INTERP_TECH_POLARITY, -1, "polarity -1",
+	  "[generator] polarity" },
 	{ MODBUS, INTERP_TECH_PEAK_A, 6, "", "" },
 	{ MODBUS, INTERP_TECH_PEAK_A, 26, "peak_a 26 A", "0.1 to 25.5 A" },
 	{ MODBUS, INTERP_TECH_ON_US, 8, "", "" },
@@ -538,6 +533,7 @@ static const struct {
 	{ MODBUS, INTERP_TECH_IGNITION_V, 180, "", "" },
 	{ MODBUS, INTERP_TECH_POLARITY, -1, "", "" },
 	{ MODBUS, INTERP_TECH_ISO, 1, "iso 1", "[generator] iso" },
+	{ MODBUS "iso = register 5 bit 4\n", INTERP_TECH_ISO, 1, "", "" },
 	{ BY_PLC, INTERP_TECH_PEAK_A, 6, "", "" },
 	{ BY_PLC, INTERP_TECH_ON_US, 8, "", "" },
 	{ BY_PLC, INTERP_TECH_OFF_US, 20, "", "" },
@@ -594,6 +590,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_condition_reaches_it_whole),
 		cmocka_unit_test(what_changes_is_sent_at_once_and_all_of_it_again),
+		cmocka_unit_test(what_the_queue_does_not_take_is_not_in_force),
 		cmocka_unit_test(what_it_tells_is_in_force_when_it_agrees),
 		cmocka_unit_test(one_that_lies_is_trouble_in_its_period),
 		cmocka_unit_test(what_it_loses_in_a_step_against_arcs_is_seen_at_once),
@@ -605,6 +602,7 @@ int main(void)
 		cmocka_unit_test(what_is_asked_anew_is_judged_anew),
 		cmocka_unit_test(sums_run_on_and_only_up),
 		cmocka_unit_test(energy_is_handed_on_with_the_sparks),
+		cmocka_unit_test(one_that_comes_back_to_what_it_tells_has_settle_ms),
 		cmocka_unit_test(its_own_fault_is_trouble_until_it_is_gone_and_reset),
 		cmocka_unit_test(each_field_reaches_it_or_is_refused),
 		cmocka_unit_test(lines_have_the_code_of_the_value),

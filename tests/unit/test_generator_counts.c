@@ -282,14 +282,14 @@ static void counts_that_never_come_are_none_in_share_stale_ms(void **st)
 	bed_unmake(&b);
 }
 
-/* What it counted between is not known. */
-static void one_that_counts_anew_gives_no_reading_of_that(void **state)
+/* From @from on all of them; what it counted between is not known. */
+static void check_counting_anew(double from)
 {
 	struct bed b;
 
-	(void)state;
 	bed_make(&b, "");
 	b.out.power = true;
+	count(&b, from, from, from, from);
 	period(&b);
 	for (int i = 0; i < 3; i++) {
 		count(&b, 1000, 3000, 0, 0);
@@ -307,7 +307,17 @@ static void one_that_counts_anew_gives_no_reading_of_that(void **state)
 	tell_counts(&b, 0);
 	period(&b);
 	assert_true(!b.in.shares_old && b.in.shares.spark == 1);
+	assert_true(b.g->heard[PROCESS_SPARKS] < 10000);
 	bed_unmake(&b);
+}
+
+/* From high up, 0 is not far ahead of it. */
+static void one_that_counts_anew_gives_no_reading_of_that(void **state)
+{
+	(void)state;
+	check_counting_anew(0);
+	check_counting_anew(3e9);
+	check_counting_anew(UINT32_MAX - 1e8);
 }
 
 /* -- Whatever it does ------------------------------------------------------ */

@@ -110,10 +110,10 @@ static void ask(struct shop *s, double peak_a, double ignition_v)
 	s->r.out.asked++;
 }
 
-static struct generator *shop_dac(struct shop *s)
+static struct generator *shop_of(struct shop *s, const char *text)
 {
 	struct interp_diag d = { .line = 0 };
-	struct generator *g = shop_generator(s, layout);
+	struct generator *g = shop_generator(s, text);
 
 	if (generator_dac_open(g, root, &d) != 0)
 		fail_msg("%s; %s", d.found, d.wanted);
@@ -121,6 +121,11 @@ static struct generator *shop_dac(struct shop *s)
 	/* Late is late by the clock of the cycle, and this one turns fast. */
 	g->confirm = UINT32_MAX;
 	return g;
+}
+
+static struct generator *shop_dac(struct shop *s)
+{
+	return shop_of(s, layout);
 }
 
 static void it_begins_and_ends_at_zero(void **state)
@@ -200,6 +205,48 @@ static void it_is_in_force_settle_ms_after_it_is_there(void **state)
 	}
 	assert_true(is_in_force(&s));
 	s.axes.close(s.axes.self);
+}
+
+/* A step is 14.65 mA.  It tells the nearest 1 mA. */
+static void what_it_tells_is_a_step_beside_it_or_within(void **state)
+{
+	static const struct {
+		const char *within;
+		uint64_t told_ma;
+		bool is_that;
+	} rows[] = {
+		{ "", 6000, true }, { "", 5985, true }, { "", 6015, true },
+		{ "", 5984, false }, { "", 6016, false },
+		{ "within 0.2", 5786, true }, { "within 0.2", 5784, false },
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++) {
+		struct shop s;
+		struct generator *g;
+		char text[400];
+
+		snprintf(text, sizeof(text), "[machine]\nbackend = null\n"
+			 "period_us = 1000\n[generator]\ninterface = can\n"
+			 "settle_ms = 5\nsilent_ms = 60000\n"
+			 "peak_a = dac dac1 voltage0 scale 6 to 10\n"
+			 "told_peak_a = can 1011 byte 0 scale 0.001 %s\n",
+			 rows[i].within);
+		g = shop_of(&s, text);
+		ask(&s, 6, NAN);
+		period(&s);
+		for (int n = 0; n < WAITS_MOST && generator_dac_waits(g); n++) {
+			period(&s);
+			usleep(200);
+		}
+		for (int n = 0; n < 20; n++) {
+			generator_hears(g, INTERP_TECH_PEAK_A, rows[i].told_ma);
+			period(&s);
+		}
+		assert_int_equal(s.r.in.generator.in_force == s.r.out.asked,
+				 rows[i].is_that);
+		s.axes.close(s.axes.self);
+	}
 }
 
 static bool log_has(struct shop *s, const char *text)
@@ -313,6 +360,7 @@ int main(void)
 		cmocka_unit_test(
 			a_device_that_counts_down_gives_no_more_current_either),
 		cmocka_unit_test(it_is_in_force_settle_ms_after_it_is_there),
+		cmocka_unit_test(what_it_tells_is_a_step_beside_it_or_within),
 		cmocka_unit_test(one_that_fails_is_trouble_until_a_reset),
 		cmocka_unit_test(
 			what_cannot_be_is_refused_and_nothing_is_driven),

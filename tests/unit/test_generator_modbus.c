@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #define NREGISTERS	8
+#define NINPUTS		8
 #define TURN_US		200		/* of wall time, for a period */
 #define TURNS_MOST	200000
 
@@ -26,7 +27,9 @@ struct slave {
 	_Atomic int served;		/* -1: nobody is there */
 	modbus_mapping_t *map;
 	pthread_t thread;
-	_Atomic bool quit;
+	pthread_mutex_t lock;		/* of `map`: an answer is whole */
+	_Atomic bool quit, no_6;	/* no_6: it has function 16 alone */
+	_Atomic bool waits;		/* for the lock */
 	_Atomic int late_us, refuses;	/* refuses: a register, or -1 */
 	_Atomic uint32_t asked;
 };
@@ -40,12 +43,19 @@ static void answer(struct slave *s, const uint8_t *ask, int n)
 
 	s->asked++;
 	usleep((useconds_t)atomic_load(&s->late_us));
-	if ((ask[at] == 6 || ask[at] == 16) && no >= first &&
-	    no < first + count)
+	s->waits = true;
+	pthread_mutex_lock(&s->lock);
+	s->waits = false;
+	if (ask[at] == 6 && atomic_load(&s->no_6))
+		modbus_reply_exception(s->link, ask,
+				       MODBUS_EXCEPTION_ILLEGAL_FUNCTION);
+	else if ((ask[at] == 6 || ask[at] == 16) && no >= first &&
+		 no < first + count)
 		modbus_reply_exception(s->link, ask,
 				       MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE);
 	else
 		modbus_reply(s->link, ask, n, s->map);
+	pthread_mutex_unlock(&s->lock);
 }
 
 static void *serve(void *arg)
@@ -71,8 +81,9 @@ static void slave_begin(struct slave *s)
 	struct sockaddr_in at;
 	socklen_t size = sizeof(at);
 
-	*s = (struct slave) { .refuses = -1 };
-	s->map = modbus_mapping_new(0, 0, NREGISTERS, 0);
+	*s = (struct slave) { .refuses = -1,
+			      .lock = PTHREAD_MUTEX_INITIALIZER };
+	s->map = modbus_mapping_new(0, 0, NREGISTERS, NINPUTS);
 	/* Any port that is free. */
 	s->listens = socket(AF_INET, SOCK_STREAM, 0);
 	at = (struct sockaddr_in) { .sin_family = AF_INET,
@@ -101,9 +112,10 @@ static void slave_end(struct slave *s)
 static const char layout[] =
 	"peak_a = register 0 scale 0.1\non_us = register 1 scale 0.1\n"
 	"off_us = register 2 scale 0.1\nignition_v = register 3\n"
-	"polarity = register 5 bit 0\n";
+	"polarity = register 5 bit 0\nservo_v = register 6 scale 0.1\n";
 
 static struct slave slave;
+static struct shop shop;
 
 static void shop_open_with(struct shop *s, int cuts, const char *more)
 {
@@ -130,12 +142,19 @@ static void shop_open(struct shop *s, int cuts)
 	shop_open_with(s, cuts, "");
 }
 
-static void shop_close(struct shop *s)
+/* Also of a test that failed: its threads would go on in the next one. */
+static int shop_close(void **state)
 {
-	rig_free(&s->r);
-	s->axes.close(s->axes.self);
+	(void)state;
+	rig_free(&shop.r);
+	if (shop.axes.close)
+		shop.axes.close(shop.axes.self);
 	slave_end(&slave);
+	memset(&shop, 0, sizeof(shop));
+	return 0;
 }
+
+#define WITH_SHOP(test)	cmocka_unit_test_teardown(test, shop_close)
 
 /* Nobody writes it while there are sparks: it is the condition of the place. */
 static void check_spark(struct shop *s)
@@ -150,6 +169,7 @@ static void check_spark(struct shop *s)
 	assert_int_equal(has[1], lround(10 * t->v[INTERP_TECH_ON_US]));
 	assert_int_equal(has[2], lround(10 * t->v[INTERP_TECH_OFF_US]));
 	assert_int_equal(has[3], lround(t->v[INTERP_TECH_IGNITION_V]));
+	assert_int_equal(has[6], lround(10 * t->v[INTERP_TECH_SERVO_V]));
 	if (!isnan(t->v[INTERP_TECH_POLARITY]))
 		assert_int_equal(has[5], t->v[INTERP_TECH_POLARITY] < 0);
 }
@@ -169,51 +189,46 @@ static void turn(struct shop *s)
 
 static void c200_reaches_it_whole_before_the_first_spark(void **state)
 {
-	struct shop s;
 
 	(void)state;
-	shop_open(&s, 1);
-	for (int i = 0; i < TURNS_MOST && !s.sparks; i++)
-		turn(&s);
+	shop_open(&shop, 1);
+	for (int i = 0; i < TURNS_MOST && !shop.sparks; i++)
+		turn(&shop);
 	assert_int_equal(slave.map->tab_registers[0], 60);
 	assert_int_equal(slave.map->tab_registers[1], 80);
 	assert_int_equal(slave.map->tab_registers[2], 200);
 	assert_int_equal(slave.map->tab_registers[3], 180);
-	assert_true(s.waits > 0);
-	shop_close(&s);
+	assert_int_equal(slave.map->tab_registers[6], 150);
+	assert_true(shop.waits > 0);
 }
 
 /* It tells the others.  It has its voltage so long after it has taken it. */
 static void what_it_does_not_tell_has_settle_ms(void **state)
 {
-	struct shop s;
 	int64_t from_ns;
 
 	(void)state;
-	shop_open_with(&s, 1, "told_ignition_v = none\nsettle_ms = 200\n");
+	shop_open_with(&shop, 1, "told_ignition_v = none\nsettle_ms = 200\n");
 	from_ns = clock_ns(CLOCK_MONOTONIC);
-	for (int i = 0; i < TURNS_MOST && !s.sparks; i++)
-		turn(&s);
-	assert_true(s.sparks > 0);
+	for (int i = 0; i < TURNS_MOST && !shop.sparks; i++)
+		turn(&shop);
+	assert_true(shop.sparks > 0);
 	assert_true(clock_ns(CLOCK_MONOTONIC) - from_ns >= 200 * 1000000);
-	shop_close(&s);
 }
 
 static void no_spark_has_another_condition_however_late_it_is(void **state)
 {
 	uint64_t seed = seed_take();
-	struct shop s;
 
 	(void)state;
-	shop_open(&s, 30);
-	for (int i = 0; i < TURNS_MOST && s.r.c.loaded; i++) {
+	shop_open(&shop, 30);
+	for (int i = 0; i < TURNS_MOST && shop.r.c.loaded; i++) {
 		if (rnd(&seed) % 50 == 0)
 			slave.late_us = (int)(rnd(&seed) % 8000);
-		turn(&s);
+		turn(&shop);
 	}
-	assert_int_equal(s.r.c.outcome, OUTCOME_DONE);
-	assert_true(s.sparks > 1000 && s.waits > 30);
-	shop_close(&s);
+	assert_int_equal(shop.r.c.outcome, OUTCOME_DONE);
+	assert_true(shop.sparks > 1000 && shop.waits > 30);
 }
 
 static void until_fault(struct shop *s)
@@ -228,54 +243,281 @@ static void until_fault(struct shop *s)
 
 static void what_it_refuses_never_sparks_and_is_a_fault(void **state)
 {
-	struct shop s;
 
 	(void)state;
-	shop_open(&s, 3);
+	shop_open(&shop, 3);
 	slave.refuses = 2;
-	until_fault(&s);
-	assert_int_equal(s.sparks, 0);
+	until_fault(&shop);
+	assert_int_equal(shop.sparks, 0);
 	/* Once it takes it, an operator goes on. */
 	slave.refuses = -1;
-	s.r.in.generator.trouble = false;
-	assert_int_equal(tell(&s.r, CYCLE_RESET), ANSWER_DONE);
+	shop.r.in.generator.trouble = false;
+	assert_int_equal(tell(&shop.r, CYCLE_RESET), ANSWER_DONE);
 	for (int i = 0; i < 50; i++)
-		turn(&s);
-	assert_int_equal(tell(&s.r, CYCLE_START), ANSWER_DONE);
-	for (int i = 0; i < TURNS_MOST && !s.sparks; i++)
-		turn(&s);
-	assert_true(s.sparks > 0);
-	shop_close(&s);
+		turn(&shop);
+	assert_int_equal(tell(&shop.r, CYCLE_START), ANSWER_DONE);
+	for (int i = 0; i < TURNS_MOST && !shop.sparks; i++)
+		turn(&shop);
+	assert_true(shop.sparks > 0);
 }
 
 static void one_that_loses_its_values_ends_the_sparks(void **state)
 {
-	struct shop s;
 
 	(void)state;
-	shop_open(&s, 1);
-	for (int i = 0; i < TURNS_MOST && !s.sparks; i++)
-		turn(&s);
+	shop_open(&shop, 1);
+	for (int i = 0; i < TURNS_MOST && !shop.sparks; i++)
+		turn(&shop);
 	slave.map->tab_registers[0] = 0;
 	/* What it tells is the evidence. */
-	for (int i = 0; i < TURNS_MOST && !s.r.in.generator.trouble; i++) {
-		s.axes.read(s.axes.self, &s.r.in);
+	for (int i = 0; i < TURNS_MOST && !shop.r.in.generator.trouble; i++) {
+		shop.axes.read(shop.axes.self, &shop.r.in);
 		usleep(TURN_US);
 	}
-	step(&s.r, SPARKING_V);
-	assert_false(s.r.out.power);
-	assert_int_equal(s.r.c.fault.first, FAULT_GENERATOR);
-	shop_close(&s);
+	step(&shop.r, SPARKING_V);
+	assert_false(shop.r.out.power);
+	assert_int_equal(shop.r.c.fault.first, FAULT_GENERATOR);
+}
+
+/* -- A link that is cut ---------------------------------------------------- */
+
+static void restart(void)
+{
+	pthread_mutex_lock(&slave.lock);
+	memset(slave.map->tab_registers, 0, NREGISTERS * sizeof(uint16_t));
+	shutdown(modbus_get_socket(slave.link), SHUT_RDWR);
+	pthread_mutex_unlock(&slave.lock);
+}
+
+/* It is switched off and on while it sparks, and the link is cut by that.  What
+ * it has lost is not given back to it in secret: until the sparks are off it
+ * has nothing. */
+static void restarts_and_has_nothing_until_it_is_known(const char *more)
+{
+	shop_open_with(&shop, 1, more);
+	for (int i = 0; i < TURNS_MOST && !shop.sparks; i++)
+		turn(&shop);
+	restart();
+	for (int i = 0; i < TURNS_MOST / 10 && !shop.r.in.generator.trouble;
+	     i++) {
+		shop.axes.read(shop.axes.self, &shop.r.in);
+		assert_int_equal(slave.map->tab_registers[0], 0);
+		usleep(TURN_US);
+	}
+	assert_true(shop.r.in.generator.trouble);
+	step(&shop.r, SPARKING_V);
+	assert_false(shop.r.out.power);
+	/* An operator looks at it, and it has all of it again. */
+	for (int i = 0; i < TURNS_MOST && shop.r.c.fault.latched; i++) {
+		tell(&shop.r, CYCLE_RESET);
+		turn(&shop);
+	}
+	for (int i = 0; i < 50; i++)
+		turn(&shop);
+	assert_int_equal(tell(&shop.r, CYCLE_START), ANSWER_DONE);
+	shop.sparks = 0;
+	for (int i = 0; i < TURNS_MOST && !shop.sparks; i++)
+		turn(&shop);
+	assert_true(shop.sparks > 0);
+}
+
+static void what_it_lost_behind_a_cut_link_ends_the_sparks(void **state)
+{
+	(void)state;
+	restarts_and_has_nothing_until_it_is_known("");
+}
+
+static void what_it_does_not_tell_may_be_lost_behind_a_cut_link(void **state)
+{
+	(void)state;
+	restarts_and_has_nothing_until_it_is_known(
+		"told_peak_a = none\ntold_on_us = none\ntold_off_us = none\n"
+		"told_ignition_v = none\ntold_polarity = none\n");
+}
+
+/* It may be slow, or on a bad line: it has all of it, and is asked again. */
+static void a_link_that_is_cut_is_no_fault_by_itself(void **state)
+{
+	(void)state;
+	shop_open(&shop, 1);
+	for (int i = 0; i < TURNS_MOST && !shop.sparks; i++)
+		turn(&shop);
+	for (int n = 0; n < 5; n++) {
+		const uint32_t asked = slave.asked;
+
+		shutdown(modbus_get_socket(slave.link), SHUT_RDWR);
+		for (int i = 0; i < TURNS_MOST && slave.asked < asked + 4; i++)
+			usleep(TURN_US);
+		turn(&shop);
+		turn(&shop);
+	}
+	assert_false(shop.r.in.generator.trouble);
+	assert_true(shop.r.out.power);
+}
+
+static void one_without_function_6_is_written_by_16(void **state)
+{
+	(void)state;
+	shop_open(&shop, 3);
+	slave.no_6 = true;
+	for (int i = 0; i < TURNS_MOST && shop.r.c.loaded; i++)
+		turn(&shop);
+	assert_int_equal(shop.r.c.outcome, OUTCOME_DONE);
+}
+
+static void what_one_without_function_6_refuses_is_told_as_it_is(void **state)
+{
+	char text[160];
+
+	(void)state;
+	shop_open(&shop, 3);
+	slave.no_6 = true;
+	slave.refuses = 1;
+	until_fault(&shop);
+	assert_true(shop.axes.note(shop.axes.self, text, sizeof(text)));
+	assert_non_null(strstr(text, "refuses on_us: asked 8, answered "
+			       "exception 3, no such value"));
+}
+
+/* -- Counts ---------------------------------------------------------------- */
+
+#define STALE	100			/* periods */
+
+static void counts_open(void)
+{
+	struct generator *g;
+
+	shop_open_with(&shop, 1,
+		       "told_opens = input 0 bits 32\n"
+		       "told_sparks = input 2 bits 32 first low\n"
+		       "told_arcs = input 4 bits 32\n"
+		       "told_shorts = input 6 bits 32\n");
+	g = shop.axes.self;
+	shop.c.gap.source = GAP_COUNTS;
+	generator_counts_init(g, &shop.c, STALE);
+	shop.r.out = (struct io_outputs) { .power = true };
+	io_pulse_own(&shop.r.out);
+	shop.axes.write(shop.axes.self, &shop.r.out);
+}
+
+static void count(const uint32_t sum[GENERATOR_NCOUNTS])
+{
+	uint16_t *to = slave.map->tab_input_registers;
+
+	pthread_mutex_lock(&slave.lock);
+	for (int i = 0; i < GENERATOR_NCOUNTS; i++) {
+		to[2 * i + (i == 1)] = (uint16_t)(sum[i] >> 16);
+		to[2 * i + (i != 1)] = (uint16_t)sum[i];
+	}
+	pthread_mutex_unlock(&slave.lock);
+}
+
+static void period(void)
+{
+	shop.axes.read(shop.axes.self, &shop.r.in);
+	shop.axes.write(shop.axes.self, &shop.r.out);
+}
+
+/* Three requests are an exchange: one that has begun by now, a whole one, and
+ * the begin of one more. */
+static void hear_all(void)
+{
+	const uint32_t from = slave.asked;
+
+	for (int i = 0; i < TURNS_MOST && slave.asked - from < 7; i++)
+		usleep(TURN_US);
+	assert_true(slave.asked - from >= 7);
+	period();
+}
+
+/* Those since the last reading, as shares. */
+static void reads(const uint32_t sum[GENERATOR_NCOUNTS], double open,
+		  double spark, double arc, double shorted)
+{
+	const struct io_shares *s = &shop.r.in.shares;
+
+	count(sum);
+	hear_all();
+	assert_true(shop.r.in.shares_valid && !shop.r.in.shares_due);
+	assert_near((double)s->open, open, 1e-6);
+	assert_near((double)s->spark, spark, 1e-6);
+	assert_near((double)s->arc, arc, 1e-6);
+	assert_near((double)s->shorted, shorted, 1e-6);
+}
+
+static void counts_become_shares_over_the_ends_of_registers(void **st)
+{
+	const uint32_t top = UINT32_MAX - 99;
+
+	(void)st;
+	counts_open();
+	count((uint32_t[]) { top, 0xffff, 0x1ffff, 7 });
+	hear_all();
+	assert_true(shop.r.in.shares_due && !shop.r.in.shares_valid);
+	/* Over a register's end, and over that of both. */
+	reads((uint32_t[]) { top + 200, 0xffff + 400, 0x1ffff + 300, 107 },
+	      0.2, 0.4, 0.3, 0.1);
+	/* Nothing more is counted: the last reading, and older. */
+	hear_all();
+	assert_true(shop.r.in.shares_valid && shop.r.in.shares_old);
+	/* They jump back: one telling is none, the next one is a reading. */
+	count((uint32_t[]) { 0, 0, 0, 0 });
+	hear_all();
+	assert_near((double)shop.r.in.shares.spark, 0.4, 1e-6);
+	reads((uint32_t[]) { 0, 500, 0, 500 }, 0, 0.5, 0, 0.5);
+	/* As late as an answer may be. */
+	slave.late_us = 20000;
+	reads((uint32_t[]) { 1000, 500, 0, 500 }, 1, 0, 0, 0);
+}
+
+static void counts_that_stand_or_are_silent_are_none(void **state)
+{
+	char text[160];
+
+	(void)state;
+	for (int silent = 0; silent < 2; silent++) {
+		if (silent)
+			shop_close(state);
+		counts_open();
+		count((uint32_t[]) { 0, 0, 0, 0 });
+		hear_all();
+		hear_all();
+		reads((uint32_t[]) { 0, 100, 0, 100 }, 0, 0.5, 0, 0.5);
+		if (silent)
+			pthread_mutex_lock(&slave.lock);
+		/* All that it has told before is there. */
+		for (int i = 0; silent && i < TURNS_MOST && !slave.waits; i++)
+			usleep(TURN_US);
+		for (int i = 0; i <= STALE; i++) {
+			if (silent)
+				period();
+			else
+				hear_all();
+		}
+		if (silent)
+			pthread_mutex_unlock(&slave.lock);
+		assert_false(shop.r.in.shares_valid || shop.r.in.shares_due);
+		assert_true(shop.axes.note(shop.axes.self, text, sizeof(text)));
+		assert_non_null(strstr(text, silent ? "does not tell its opens"
+						    : "counts no pulses"));
+	}
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(c200_reaches_it_whole_before_the_first_spark),
-		cmocka_unit_test(what_it_does_not_tell_has_settle_ms),
-		cmocka_unit_test(no_spark_has_another_condition_however_late_it_is),
-		cmocka_unit_test(what_it_refuses_never_sparks_and_is_a_fault),
-		cmocka_unit_test(one_that_loses_its_values_ends_the_sparks),
+		WITH_SHOP(c200_reaches_it_whole_before_the_first_spark),
+		WITH_SHOP(what_it_does_not_tell_has_settle_ms),
+		WITH_SHOP(no_spark_has_another_condition_however_late_it_is),
+		WITH_SHOP(what_it_refuses_never_sparks_and_is_a_fault),
+		WITH_SHOP(one_that_loses_its_values_ends_the_sparks),
+		WITH_SHOP(what_it_lost_behind_a_cut_link_ends_the_sparks),
+		WITH_SHOP(what_it_does_not_tell_may_be_lost_behind_a_cut_link),
+		WITH_SHOP(a_link_that_is_cut_is_no_fault_by_itself),
+		WITH_SHOP(one_without_function_6_is_written_by_16),
+		WITH_SHOP(what_one_without_function_6_refuses_is_told_as_it_is),
+		WITH_SHOP(counts_become_shares_over_the_ends_of_registers),
+		WITH_SHOP(counts_that_stand_or_are_silent_are_none),
 	};
 
 	return cmocka_run_group_tests_name("io/generator_modbus", tests,

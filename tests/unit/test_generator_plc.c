@@ -23,9 +23,11 @@ struct box {
 	int n;
 };
 
-/* Current, on, off, voltage; negative and iso are 1 or 0. */
+#define NVALUES		PLC_NPULSES
+
+/* Current, on, off, voltage, servo; negative and iso are 1 or 0. */
 struct pulse {
-	double v[4];
+	double v[NVALUES];
 	bool negative, iso;
 };
 
@@ -34,6 +36,10 @@ struct pulse {
 struct far_end {
 	struct pulse image, real, next;	/* received, at the generator */
 	uint16_t asked, set, in_force;	/* numbers */
+	uint16_t read_of;		/* what was asked when the servo's
+					 * voltage was asked for by SDO */
+	bool reads, has_read;
+	bool plain;			/* it knows nothing of that voltage */
 	uint16_t fault;
 	int left;			/* periods until real is next; -1: is */
 	int to_scan, scan_most, slow_most;
@@ -81,14 +87,42 @@ static void plc_takes(struct far_end *f, const struct can_msg *m)
 		f->asked = (uint16_t)can_get(m->data + 5, 2);
 		f->image.negative = m->data[7] & 1;
 		f->image.iso = m->data[7] & 2;
+	} else if (m->id == 0x580 + NODE) {
+		assert_int_equal(m->data[0], 0x4b);
+		f->image.v[4] = value_at(m, 4);
+		f->reads = false;
+		f->has_read = true;
 	}
 }
 
-static void plc_program(struct far_end *f)
+/* What comes may be of a number before: it is read until none came between. */
+static bool plc_has_read(struct plant *p)
 {
+	struct far_end *f = &p->far;
+	const struct can_msg ask = { .id = 0x600 + NODE, .len = 8,
+				     .data = { 0x40, 0x02, 0x20, 5 } };
+	const bool has = f->has_read && f->read_of == f->asked;
+
+	if (has || f->reads || f->plain) {
+		f->has_read = false;
+		return has || f->plain;
+	}
+	f->has_read = false;
+	f->reads = true;
+	f->read_of = f->asked;
+	put(&p->from, &ask);
+	return false;
+}
+
+static void plc_program(struct plant *p)
+{
+	struct far_end *f = &p->far;
+
 	if (f->asked == 0) {
 		f->in_force = f->set = 0;
 	} else if (f->asked != f->set) {
+		if (!plc_has_read(p))
+			return;
 		f->next = f->image;
 		f->set = f->asked;
 		f->left = (int)(rnd(&f->seed) % (uint64_t)(f->slow_most + 1));
@@ -109,7 +143,8 @@ static void plc_answers(struct plant *p)
 	const struct pulse *told = f->lies ? &f->next : &f->real;
 	struct can_msg ask = { .id = 0x200 + NODE, .len = 8,
 			       .data = { 1, 0x1f, 0xe8, 3 } };
-	struct can_msg generator = { .id = 0x300 + NODE, .len = 5 };
+	struct can_msg generator = { .id = 0x300 + NODE,
+				     .len = f->plain ? 5 : 7 };
 	struct can_msg pulse = { .id = 0x400 + NODE, .len = 8 };
 	const bool first = rnd(&f->seed) % 2;
 
@@ -119,6 +154,8 @@ static void plc_answers(struct plant *p)
 	can_put(generator.data, f->in_force, 2);
 	can_put(generator.data + 2, f->fault, 2);
 	generator.data[4] = (uint8_t)(told->negative | told->iso << 1);
+	if (!f->plain)
+		can_put(generator.data + 5, count_of(told->v[4]), 2);
 	for (int i = 0; i < 4; i++)
 		can_put(pulse.data + 2 * i, count_of(told->v[i]), 2);
 	if (f->mute)
@@ -141,7 +178,7 @@ static void plc_scans(struct plant *p)
 	}
 	if (f->dead)
 		return;
-	plc_program(f);
+	plc_program(p);
 	plc_answers(p);
 	f->to_scan = (int)(rnd(&f->seed) % (uint64_t)(f->scan_most + 1));
 }
@@ -159,13 +196,17 @@ static void far_period(struct plant *p)
 
 /* -- The machine ----------------------------------------------------------- */
 
-static void plant_open(struct plant *p, int cuts, uint64_t seed)
+static void plant_open_with(struct plant *p, int cuts, uint64_t seed,
+			    bool servo)
 {
 	struct cycle_config k;
 	struct generator *g;
+	char text[400];
 
 	memset(&p->plc, 0, sizeof(*p) - sizeof(p->s));
-	g = shop_generator(&p->s, machine);
+	snprintf(text, sizeof(text), "%s%s", machine, servo ?
+		 "servo_v = plc\n" : "");
+	g = shop_generator(&p->s, text);
 	plc_init(&p->plc, NODE);
 	p->plc.sets = true;
 	p->plc.send_cycles = 20;
@@ -173,10 +214,15 @@ static void plant_open(struct plant *p, int cuts, uint64_t seed)
 	g->takes = true;
 	g->plc = &p->plc;
 	p->far = (struct far_end) { .seed = seed, .left = -1, .scan_most = 4,
-				    .slow_most = 9 };
+				    .slow_most = 9, .plain = !servo };
 	k = shop_config(&p->s);
 	shop_load(&p->s, cuts, &k);
 	put(&p->from, &(struct can_msg) { .len = 2, .data = { 1, NODE } });
+}
+
+static void plant_open(struct plant *p, int cuts, uint64_t seed)
+{
+	plant_open_with(p, cuts, seed, true);
 }
 
 static void plant_close(struct plant *p)
@@ -192,15 +238,15 @@ static bool same(double has, double asked)
 
 static bool has_the_places(const struct plant *p)
 {
-	static const enum interp_tech_id field[4] = {
+	static const enum interp_tech_id field[NVALUES] = {
 		INTERP_TECH_PEAK_A, INTERP_TECH_ON_US, INTERP_TECH_OFF_US,
-		INTERP_TECH_IGNITION_V
+		INTERP_TECH_IGNITION_V, INTERP_TECH_SERVO_V
 	};
 	const struct interp_tech *t = place_of(&p->s);
 	const struct pulse *real = &p->far.real;
 	bool all = real->negative == (t->v[INTERP_TECH_POLARITY] < 0);
 
-	for (int i = 0; i < 4; i++)
+	for (int i = 0; i < NVALUES - p->far.plain; i++)
 		all = all && same(real->v[i], t->v[field[i]]);
 	return all;
 }
@@ -288,6 +334,30 @@ static void c200_reaches_it_whole_before_the_first_spark(void **state)
 	assert_true(fabs(p.far.real.v[1] - 8) < 1e-9);
 	assert_true(fabs(p.far.real.v[2] - 20) < 1e-9);
 	assert_true(fabs(p.far.real.v[3] - 180) < 1e-9);
+	assert_true(fabs(p.far.real.v[4] - 15) < 1e-9);
+	plant_close(&p);
+}
+
+/* Its PlcGenerator ends before ToldServo, and nothing is missed. */
+static void one_without_a_servo_of_its_own_is_good_as_it_is(void **state)
+{
+	struct plant p;
+
+	(void)state;
+	plant_open_with(&p, 3, 1, false);
+	until_sparks(&p);
+	assert_true(isnan(p.s.r.out.pulse[INTERP_TECH_SERVO_V]));
+	assert_int_equal(p.plc.tell.pulse.value[4], UINT16_MAX);
+	assert_int_equal(p.plc.malformed, 0);
+	assert_true(p.s.r.c.gap.servo_v == 15);
+	/* Where it is laid out, what is not told any more is a lie. */
+	plant_close(&p);
+	plant_open(&p, 3, 1);
+	until_sparks(&p);
+	p.far.plain = true;
+	until_fault(&p, 20);
+	log_is(&p, "generator: servo_v was in force and is no more: asked 15, "
+	       "told 6553.5");
 	plant_close(&p);
 }
 
@@ -425,8 +495,9 @@ static void one_that_is_silent_is_a_fault_in_silent_ms(void **state)
 	plant_open(&p, 1, 1);
 	until_sparks(&p);
 	p.far.mute = true;
+	/* At the servo's voltage the machine stands, and sparks. */
 	for (; !p.s.r.c.fault.latched && n < 200; n++)
-		turn(&p);
+		turn_at(&p, 15);
 	assert_in_range(n, SILENT_MS - 6, SILENT_MS + 2);
 	log_is(&p, "generator: it does not tell its peak_a any more");
 	plant_close(&p);
@@ -537,6 +608,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(c200_reaches_it_whole_before_the_first_spark),
+		cmocka_unit_test(one_without_a_servo_of_its_own_is_good_as_it_is),
 		cmocka_unit_test(a_change_takes_a_round_trip_and_two_periods),
 		cmocka_unit_test(a_number_of_before_is_not_taken_for_an_answer),
 		cmocka_unit_test(a_plc_may_come_after_edmd),

@@ -350,6 +350,66 @@ static void a_program_from_elsewhere_is_refused(void **state)
 }
 
 /* Nothing moves, and the axis counts on from there. */
+/* The drive moves by itself, and then counts from its own zero. */
+static void a_drive_homes_by_itself(void **state)
+{
+	const struct cycle_config k = home_config(HOME_DRIVE);
+	struct bench b;
+
+	(void)state;
+	bench_init(&b, &k);
+	b.in.limit = X_BIT;		/* its own method may begin there */
+	period(&b);
+	assert_int_equal(ask(&b, CYCLE_HOME, INTERP_X, 0), ANSWER_DONE);
+	for (int i = 0; i < 100; i++) {
+		b.in.homing = i > 2 ? X_BIT : 0;
+		b.in.limit = i < 50 ? X_BIT : 0;
+		period(&b);
+		assert_int_equal(b.c.state, STATE_HOME);
+		assert_int_equal(b.c.manual.unplaced, X_BIT);
+	}
+	assert_int_equal(b.out.home, X_BIT);
+	b.in.homing = 0;
+	b.in.homed = X_BIT;
+	b.own_more = 25000;
+	run_out(&b, STATE_IDLE);
+	assert_int_equal(b.out.home, 0);
+	assert_int_equal(b.c.out.target[INTERP_X], 25000 - 10000);
+	assert_int_equal(b.out.target[INTERP_X], 0);
+	assert_int_equal(manual_unhomed(&b.c), 0);
+	assert_int_equal(b.most, 0);
+}
+
+static void a_stop_waits_until_the_drive_has_ended_its_homing(void **state)
+{
+	const struct cycle_config k = home_config(HOME_DRIVE);
+	struct bench b;
+
+	(void)state;
+	bench_init(&b, &k);
+	ask(&b, CYCLE_HOME, INTERP_X, 0);
+	b.in.homing = X_BIT;
+	for (int i = 0; i < 10; i++)
+		period(&b);
+	ask(&b, CYCLE_HOLD, 0, 0);
+	for (int i = 0; i < 10; i++) {
+		period(&b);
+		assert_int_equal(b.out.home, 0);
+		assert_int_equal(b.c.state, STATE_HOME);
+	}
+	b.in.homing = 0;
+	b.in.unfound = X_BIT;
+	run_out(&b, STATE_IDLE);
+	assert_int_equal(b.c.manual.unplaced, X_BIT);
+	b.in.unfound = 0;
+	ask(&b, CYCLE_HOME, INTERP_X, 0);
+	period(&b);
+	b.in.unfound = X_BIT;
+	run_out(&b, STATE_FAULT);
+	assert_int_equal(b.c.fault.first, FAULT_HOME);
+	assert_int_equal(b.out.home, 0);
+}
+
 static void a_person_says_where_an_axis_stands(void **state)
 {
 	struct bench b;
@@ -406,6 +466,9 @@ int main(void)
 		cmocka_unit_test(only_axes_with_a_method_are_homed),
 		cmocka_unit_test(unhomed_nothing_is_cut_if_so_configured),
 		cmocka_unit_test(a_program_from_elsewhere_is_refused),
+		cmocka_unit_test(a_drive_homes_by_itself),
+		cmocka_unit_test(
+			a_stop_waits_until_the_drive_has_ended_its_homing),
 		cmocka_unit_test(a_person_says_where_an_axis_stands),
 	};
 

@@ -107,8 +107,9 @@ static bool is_off(const struct interp_program *p, uint32_t n)
 
 	for (uint32_t i = 0; i < n; i++)
 		if (p->segs[i].kind == INTERP_AUX &&
-		    p->segs[i].arg <= INTERP_AUX_POWER_NEGATIVE)
-			off = p->segs[i].arg == INTERP_AUX_POWER_OFF;
+		    INTERP_AUX_OF(p->segs[i].arg) <= INTERP_AUX_POWER_NEGATIVE)
+			off = INTERP_AUX_OF(p->segs[i].arg) ==
+			      INTERP_AUX_POWER_OFF;
 	return off;
 }
 

@@ -425,7 +425,7 @@ static void a_refused_start_leaves_nothing_behind(void **state)
 		{ "drives", SHM_NOT_UP, drives_down },
 		{ "switch", SHM_AT_LIMIT, on_switch },
 		{ "home", SHM_NOT_HOMED, not_homed },
-		{ "permit", SHM_LOCKED, no_permit },
+		{ "permit", SHM_SEEN + FAULT_PERMIT, no_permit },
 	};
 	struct desk *d = *state;
 

@@ -193,6 +193,39 @@ static void a_limit_switch_that_bounces_is_where_it_was(void **state)
 	assert_int_equal(jog(&b, INTERP_X, 1), ANSWER_DONE);
 }
 
+/* Inputs of drives tell the end. */
+static void a_limit_switch_of_a_known_end_bars_the_way_there(void **state)
+{
+	const struct cycle_config k = manual_config();
+	struct bench b;
+
+	(void)state;
+	bench_init(&b, &k);
+	b.limit_max = 5000;
+	b.ends_told = true;
+	jog(&b, INTERP_X, 20);
+	run_out(&b, STATE_FAULT);
+	assert_int_equal(b.c.fault.first, FAULT_LIMIT_SWITCH);
+	ask(&b, CYCLE_RESET, 0, 0);
+	assert_int_equal(jog(&b, INTERP_X, 1), ANSWER_AT_LIMIT);
+	assert_int_equal(jog(&b, INTERP_Y, 1), ANSWER_DONE);
+	run_out(&b, STATE_IDLE);
+	assert_int_equal(jog(&b, INTERP_X, -1), ANSWER_DONE);
+	run_out(&b, STATE_IDLE);
+	/* The other one is there: they are swapped, or of another axis. */
+	bench_init(&b, &k);
+	b.limit_max = 5000;
+	b.ends_told = b.ends_swapped = true;
+	jog(&b, INTERP_X, 20);
+	run_out(&b, STATE_FAULT);
+	ask(&b, CYCLE_RESET, 0, 0);
+	assert_int_equal(jog(&b, INTERP_X, -1), ANSWER_AT_LIMIT);
+	assert_int_equal(jog(&b, INTERP_X, 1), ANSWER_AT_LIMIT);
+	b.limit_max = 300000;
+	period(&b);
+	assert_int_equal(jog(&b, INTERP_X, 1), ANSWER_DONE);
+}
+
 static void a_limit_switch_stops_a_job_and_its_start(void **state)
 {
 	const struct cycle_config k = manual_config();
@@ -333,6 +366,8 @@ int main(void)
 		cmocka_unit_test(an_e_stop_ends_it_at_once),
 		cmocka_unit_test(a_limit_switch_stops_at_once_and_lets_away_alone),
 		cmocka_unit_test(a_limit_switch_that_bounces_is_where_it_was),
+		cmocka_unit_test(
+			a_limit_switch_of_a_known_end_bars_the_way_there),
 		cmocka_unit_test(a_limit_switch_stops_a_job_and_its_start),
 		cmocka_unit_test(held_on_a_switch_only_the_way_away_is_gone),
 		cmocka_unit_test(steps_lead_from_node_to_node),

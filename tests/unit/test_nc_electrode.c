@@ -287,6 +287,94 @@ static void what_is_not_in_the_table_is_refused_with_what_is(void **state)
 	table.n = 4;
 }
 
+/* -- How it sits in the holder ------------------------------------------- */
+
+static const struct interp_electrode seats[] = {
+	{ 1, { 0.5, 0, 10, [INTERP_C] = 0 } },
+	{ 2, { -0.25, 1, 20, [INTERP_C] = 0 } },
+	{ 3, { -0.25, 1, 20, [INTERP_C] = 5 } },
+};
+
+static int read_seats(const char *text, struct nc_read *n)
+{
+	static struct interp_electrodes t = { .at = seats, .n = 3, .held = 1 };
+
+	*n = nc_ready();
+	n->o.electrodes = &t;
+	nc_read_bytes(n, text, strlen(text));
+	interp_build_destroy(n->build);
+	n->build = NULL;
+	return n->rc;
+}
+
+static void a_cut_waits_until_another_electrode_is_at_its_place(void **state)
+{
+	static const struct {
+		const char *text, *wanted;	/* NULL: it is taken */
+	} c[] = {
+		{ "G0 X1 Y1 Z5\nT2\nG0 Z1\nG1 Z0 F5\n", "X Y before" },
+		{ "G0 X1 Y1 Z5\nT2\nG0 X1\nG1 Z0 F5\n", "X Y before" },
+		{ "G0 X1 Y1 Z5\nT2\nG91 G0 X1 Y1\nG1 Z-1 F5\n", "G90" },
+		{ "G0 X1 Y1 Z5\nT2\nG53 G0 X1 Y1\nG1 Z0 F5\n", "X Y before" },
+		{ "G0 X1 Y1 Z5\nT2\nG1 X1 Y1 F5\n", NULL },
+		{ "G0 X1 Y1 Z5\nT2\nG0 X1 Y1\nG91 G1 Z-1 F5\n", NULL },
+		{ "G0 X1 Y1 Z5\nT2\nG92 X0 Y0\nG1 Z0 F5\n", NULL },
+		{ "G0 X1 Y1 Z5\nT2\nG10 L20 P1 X0 Y0\nG1 Z0 F5\n", NULL },
+		{ "G0 X1 Y1 Z5\nT3\nG0 X1 Y1\nG1 Z0 F5\n", "and C" },
+		{ "G0 X1 Y1 Z5\nT2\nG0 X1 Y1\nT3\nG1 Z0 F5\n", "and C" },
+		{ "G0 X1 Y1 Z5\nT3\nG0 X1 Y1 C0\nG1 Z0 F5\n", NULL },
+		{ "G1 Z0 F5\n", NULL },	/* it stands where it stands */
+	};
+
+	(void)state;
+	for (size_t i = 0; i < sizeof(c) / sizeof(c[0]); i++) {
+		struct nc_read n;
+		const int rc = read_seats(c[i].text, &n);
+
+		if (rc != (c[i].wanted ? -EINVAL : 0) ||
+		    (c[i].wanted && !strstr(n.diag.wanted, c[i].wanted)))
+			fail_msg("%s: %d %s; %s", c[i].text, rc, n.diag.found,
+				 n.diag.wanted);
+		if (rc == 0)
+			nc_done(&n);
+	}
+}
+
+static void its_middle_comes_to_the_place_of_the_one_before(void **state)
+{
+	struct nc_read n;
+	int64_t first[2];
+
+	(void)state;
+	assert_int_equal(read_seats("G0 X7 Y2\nT2\nG0 X7 Y2\nM2\n", &n), 0);
+	for (int i = 0; i < 2; i++)
+		first[i] = n.p.nodes[3 * n.p.head->naxes + (uint32_t)i];
+	/* From 0.5 0 to -0.25 1. */
+	assert_int_equal(n.p.nodes[5 * n.p.head->naxes] - first[0],
+			 -750 * INTERP_SUB);
+	assert_int_equal(n.p.nodes[5 * n.p.head->naxes + 1] - first[1],
+			 1000 * INTERP_SUB);
+	nc_done(&n);
+}
+
+static void a_turn_of_the_electrode_needs_a_c_that_turns_it(void **state)
+{
+	static const struct interp_kinematics table_c = {
+		.njoints = 1, .joint[0].axis = INTERP_C,
+	};
+	static struct interp_electrodes t = { .at = seats, .n = 3, .held = 2 };
+	struct nc_read n = nc_ready();
+	const char *text = "G0 X1\nT3\n";
+
+	(void)state;
+	n.o.electrodes = &t;
+	n.o.kinematics = &table_c;
+	nc_read_bytes(&n, text, strlen(text));
+	assert_int_equal(n.rc, -EINVAL);
+	assert_non_null(strstr(n.diag.found, "C does not turn it"));
+	interp_build_destroy(n.build);
+}
+
 /* -- The wear ------------------------------------------------------------- */
 
 static void wear_is_the_ratio_times_the_way_down(void **state)
@@ -344,6 +432,9 @@ int main(void)
 		T(in_linuxcnc_t_names_it_and_m6_changes_it),
 		T(a_plc_that_has_m6_changes_it_without_a_stop),
 		T(what_is_not_in_the_table_is_refused_with_what_is),
+		T(a_cut_waits_until_another_electrode_is_at_its_place),
+		T(its_middle_comes_to_the_place_of_the_one_before),
+		T(a_turn_of_the_electrode_needs_a_c_that_turns_it),
 		T(wear_is_the_ratio_times_the_way_down),
 	};
 

@@ -38,8 +38,10 @@ static void a_distance_is_told_if_it_is_less(void **state)
 		was = pair;
 		assert_false(near_less(&s.bodies, &pose, mm - 1e-9, &pair));
 		assert_memory_equal(&pair, &was, sizeof(pair));
-		assert_true(near_less(&s.bodies, &pose, mm + 1e-6, &pair));
-		assert_true(fabs(pair.mm - mm) < 1e-9);
+		assert_true(near_less(&s.bodies, &pose,
+				      mm + NEAR_SLACK_MM + 1e-6, &pair));
+		assert_true(pair.mm >= mm - 1e-9 &&
+			    pair.mm <= mm + NEAR_SLACK_MM + 1e-9);
 		drop_scene(&s);
 	}
 }
@@ -164,6 +166,63 @@ static void the_first_answer_is_that_of_a_loop(void **state)
 	}
 }
 
+/* -- Boxes ---------------------------------------------------------------- */
+
+#define CELLS	8u		/* of a wall, each way; two triangles each */
+
+/* A wall of a block, of right triangles with legs of 1 and 2 mm. */
+static void put_wall(struct mesh *m, const struct rot *turn, uint32_t wall)
+{
+	static const uint32_t corner[2][3] = { { 0, 1, 3 }, { 0, 3, 2 } };
+	const int k = (int)wall / 2, i = (k + 1) % 3, j = (k + 2) % 3;
+
+	for (uint32_t c = 0; c < CELLS * CELLS; c++) {
+		for (uint32_t v = 0; v < 4; v++) {
+			double at[3];
+
+			at[k] = wall % 2 * 8.0;
+			at[i] = c % CELLS + v % 2;
+			at[j] = 2.0 * (c / CELLS + v / 2);
+			rot_apply(turn, at, m->vert[m->nverts + v]);
+		}
+		for (uint32_t t = 0; t < 2; t++, m->ntris++)
+			for (int v = 0; v < 3; v++)
+				m->tri[m->ntris][v] = m->nverts + corner[t][v];
+		m->nverts += 4;
+	}
+}
+
+static void boxes_lie_in_their_walls_up_to_the_rim(void **state)
+{
+	const double u[3] = { 0.48, 0.6, 0.64 };
+	uint32_t thick = 0;
+	struct body b;
+
+	(void)state;
+	b.m = (struct mesh) { .name = "walls" };
+	b.m.vert = malloc(6 * 4 * CELLS * CELLS * sizeof(*b.m.vert));
+	b.m.tri = malloc(6 * 2 * CELLS * CELLS * sizeof(*b.m.tri));
+	for (uint32_t wall = 0; wall < 6; wall++) {
+		const struct rot turn = rot_about(u, 0.7);
+
+		put_wall(&b.m, &turn, wall);
+	}
+	mesh_bounds(&b.m);
+	assert_int_equal(tree_build(&b.t, &b.m), 0);
+	for (uint32_t i = 0; i < b.t.nnodes; i++) {
+		const struct box *x = &b.t.node[i];
+		const float least = fminf(x->half[0],
+					  fminf(x->half[1], x->half[2]));
+
+		if (x->n)
+			assert_true(x->half[3] < 1.501f);
+		thick += least > 1e-3f;
+	}
+	/* One for each cut between walls, where no cut goes across them. */
+	assert_true(thick < 10);
+	drop(&b);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -171,6 +230,7 @@ int main(void)
 		cmocka_unit_test(a_set_stands_for_all_that_are_near),
 		cmocka_unit_test(a_small_set_has_the_nearest),
 		cmocka_unit_test(the_first_answer_is_that_of_a_loop),
+		cmocka_unit_test(boxes_lie_in_their_walls_up_to_the_rim),
 	};
 
 	scene_seed();

@@ -20,6 +20,18 @@
 
 #define NODE	32
 
+static int refused;		/* so many frames on, one is; 0: none */
+
+int __real_can_socket_send(int fd, const struct can_msg *m);
+int __wrap_can_socket_send(int fd, const struct can_msg *m);
+
+int __wrap_can_socket_send(int fd, const struct can_msg *m)
+{
+	if (refused > 0 && --refused == 0)
+		return -ENOBUFS;
+	return __real_can_socket_send(fd, m);
+}
+
 struct rig {
 	struct plc_link l;
 	struct io_plc in;
@@ -140,6 +152,44 @@ static void a_plc_that_comes_back_starts_nothing(void **state)
 	end(&r);
 }
 
+/* Whichever frame the queue does not take: neither a number of values that were
+ * not sent, nor an M code of an electrode that was not. */
+static void no_frame_goes_out_before_what_it_is_of(void **state)
+{
+	struct plc_tell tell = { .state = 2 };
+	struct can_frame f;
+	struct rig r;
+
+	(void)state;
+	for (uint16_t n = 1; n < 200; n++) {
+		uint32_t value = 0, electrode = 0;
+
+		begin_alive(&r);
+		r.l.plc.sets = true;
+		tell.pulse.number = tell.pulse.value[0] = n;
+		tell.electrode = n;
+		tell.mcode = (uint8_t)n;
+		refused = n % 16 + 1;
+		for (int i = 0; i < 20; i++) {
+			plc_link_read(&r.l, &r.in);
+			plc_link_write(&r.l, &tell);
+			while (read(r.bus, &f, sizeof(f)) > 0) {
+				if (f.can_id == 0x680 + NODE)
+					value = can_get(f.data, 2);
+				if (f.can_id == 0x500 + NODE)
+					electrode = can_get(f.data, 2);
+				assert_true(f.can_id != 0x500 + NODE ||
+					    can_get(f.data + 5, 2) == value);
+				assert_true(f.can_id != 0x180 + NODE ||
+					    f.data[3] == electrode);
+			}
+		}
+		assert_int_equal(value, n);
+		assert_int_equal(refused, 0);
+		end(&r);
+	}
+}
+
 static void a_flood_is_taken_in_portions(void **state)
 {
 	struct rig r;
@@ -250,6 +300,7 @@ int main(void)
 		cmocka_unit_test(what_it_asks_is_read),
 		cmocka_unit_test(start_and_reset_are_edges),
 		cmocka_unit_test(a_plc_that_comes_back_starts_nothing),
+		cmocka_unit_test(no_frame_goes_out_before_what_it_is_of),
 		cmocka_unit_test(a_flood_is_taken_in_portions),
 		cmocka_unit_test(frames_of_another_kind_are_counted_not_believed),
 		cmocka_unit_test(what_repeats_is_said_ever_more_rarely),

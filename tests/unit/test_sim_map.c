@@ -104,6 +104,22 @@ static void ground_is_removed_once(void **st)
 	free(m);
 }
 
+/* Wherever it began in free space, it removes what is solid. */
+static void a_way_down_through_free_space_takes_nothing_from_the_rest(
+	void **st)
+{
+	(void)st;
+	for (double above = 0; above < 0.5; above += 0.03) {
+		struct sim_map *m = fresh_map(AREA, 64);
+
+		put(m, 0, 0, 0);
+		cut_to(m, (double[]) { 0, 0, -1 });
+		put(m, 0, 0, -1 + above);
+		near(cut_to(m, (double[]) { 0, 0, -2 }), 1, 0.01);
+		free(m);
+	}
+}
+
 /* Helix of many turns: its volume is that of the hole it leaves. */
 static void a_helix_removes_the_hole_it_leaves(void **st)
 {
@@ -202,6 +218,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(fresh_ground_meets_the_whole_area_whichever_way),
 		cmocka_unit_test(ground_is_removed_once),
+		cmocka_unit_test(
+		a_way_down_through_free_space_takes_nothing_from_the_rest),
 		cmocka_unit_test(a_helix_removes_the_hole_it_leaves),
 		cmocka_unit_test(a_wire_removes_the_strip_that_is_left),
 		cmocka_unit_test(another_ground_is_fresh),

@@ -263,10 +263,43 @@ drive_sdo = 6085:0=7a120/4 605e:0=1/2
 drive_leave = 6502
 """
 
+STRICT_HOME = "following_mm = 0.05\n" + "".join(
+    f"[axis.{axis}]\nhome_method = drive\ndrive_home = {method}\n"
+    f"home_at_mm = {at}\nhome_fast_mm_s = 20\nhome_slow_mm_s = 1\n"
+    for axis, method, at in (("X", 17, -3), ("Y", 2, 5), ("Z", 37, 2)))
+
+STRICT_INPUTS = """following_mm = 0.05
+[axis.X]
+drive_inputs = limit_low:0 limit_high:1 home:2
+home_method = switch
+home_dir = -
+home_fast_mm_s = 20
+home_slow_mm_s = 1
+home_at_mm = -3
+[axis.Y]
+drive_inputs = estop:!16
+[jump]
+v_max_mm_s = 20
+"""
+
+COMMISSION = drives("XYZ", GAP_FRAMES + """[axis.X]
+drive_inputs = limit_low:0 limit_high:1 home:2
+home_method = switch
+home_dir = -
+home_fast_mm_s = 20
+home_slow_mm_s = 5
+[axis.Y]
+drive_inputs = estop:!16
+[jump]
+v_max_mm_s = 20
+""", "no").replace("_mm = -100", "_mm = -25").replace("_mm = 100", "_mm = 25")
+
 UNRULY_SCENES = os.environ.get(
     "EDM_SCENES", "power,says,slow,plc,stranger,flood,jam,wall,odd,absolute").split(",")
 
-STRICT_REFUSED = """[axis.Z]
+STRICT_REFUSED = """[axis.B]
+drive_inputs = home:2
+[axis.Z]
 drive_identity = 1111
 """
 
@@ -283,6 +316,24 @@ def lagging(method):
 # Slow to brake: from 10 mm/s in 0.5 mm.
 BRAKES = ("[axis.X]\na_max_mm_s2 = 100\n[axis.Y]\na_max_mm_s2 = 100\n"
           "[gpio]\nchip = sim0\nbrake_Z = 26\nbrake_ms = 100\n")
+
+# The shipped machine whose generator is on lines, at the pace of the guest.
+CAN402_LINES = (ROOT / "examples/machine-can402-lines.ini").read_text()
+for was, now in (("name = edm", "name = vm"), ("period_us = 2000", "period_us = 10000"),
+                 ("interface = can0", "interface = vcan0"),
+                 ("pinctrl-rp1", "sim0"), ("copper-steel.tech", "lines.tech"),
+                 ("brake = drive", "brake = free")):
+    assert was in CAN402_LINES, was
+    CAN402_LINES = CAN402_LINES.replace(was, now)
+CAN402_LINES += "feed_gain_mm_s_v = 0.1\nfeed_max_mm_s = 5\napproach_mm_s = 1\n"
+
+LINES_TECH = """condition, peak_a [A], on_us [us], off_us [us], ignition_v [V], servo_v [V], iso
+C001, 6, 8, 20, 180, 15, 0
+C002, 30, 40, 100, 120, 20, 1
+C003, 21, 20, 50, 180, 18, 0
+"""
+LINES_CUT = ("G21 G90 T84\nC001\nG1 X1 F60\nC002 M4\nG1 X2\nC003\nG1 X3\n"
+             "C001 M3\nG1 X4\nM30\n")
 
 CUT = "G21 G90\nG1 X10 Y3 F60\nM30\n"
 TO_AND_FRO = "G21 G90\nG1 X4 Y1.2 F60\nG1 X0 Y0\nM30\n"

@@ -8,6 +8,7 @@ import math
 
 import pytest
 from boot import DRIVES
+from test_plain import lit
 
 MOVING = ("enabled", "stopping", "reacting")
 PERIOD_S = 0.01
@@ -160,6 +161,38 @@ def test_a_brake_on_a_line_is_open_under_torque_alone(can402):
     assert brake == {"before": 0, "idle": 1, "ended": 0} | {
         f"{n}: {what}": is_open for n in (1, 2, 3)
         for what, is_open in (("running", 1), ("stands", 0))}
+
+
+# Of examples/machine-can402-lines.ini: peak current, on and off time, ignition and
+# servo voltage, polarity, iso.  C002 has all of its current and is negative.
+FIELDS = (20, 21, 26, 14, 15, 18, 19, 23, 16, 17, 24, 22)
+C001, C002, C003 = ((1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0),
+                    (1, 1, 1, 0, 1, 0, 1, 0, 0, 1, 1, 1),
+                    (1, 0, 1, 1, 0, 1, 0, 1, 1, 0, 1, 0))
+SETTLE_S = 0.03
+
+
+def test_a_generator_on_lines_has_the_condition_of_each_place(can402):
+    """The kernel's trace says what it has, and the drives where that is."""
+    seen = Seen(can402, "lines")
+    seen.went_as_planned()
+    assert "program 1 ended: done" in seen.log
+    found = lit(can402.text("lines.trace"), FIELDS, spark=2, pump=3, sense=25)
+    changes = [b[0] - a[1] for a, b in zip(found, found[1:]) if a[2] != b[2]]
+    print(f"{len(found)} times with sparks; a change takes "
+          f"{[round(c * 1e3) for c in changes]} ms")
+    assert {f[2] for f in found} == {C001, C002, C003}
+    # Three on the way, and at least one back and forth.
+    assert len(changes) >= 5 and min(changes) >= SETTLE_S
+    looked = 0
+    for t, _, _, place in seen.rows:
+        x = (place[0] - 1000) / 524288 * 5
+        has = [levels for on, off, levels in found if on < t < off]
+        # What a drive tells is of two periods ago, at 1 mm/s.
+        if has and abs(x - round(x)) > 0.03:
+            assert has == [(C001, C002, C003, C001)[int(x)]], (t, x)
+            looked += 1
+    assert looked > 300
 
 
 def test_drives_that_lag_are_led_along_the_path(can402):

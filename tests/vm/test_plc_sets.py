@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A PLC that sets the generator, in virtual time; guest/plc_sets.py is the PLC.
+"""A PLC that sets the generator, in virtual time; guest/plc_sets.py is the PLC,
+and its program is examples/edmd.st.
 
 The line that allows sparks is traced by the kernel, and the PLC writes down when
 its generator changed.
@@ -19,33 +20,30 @@ alive_ms = 1000
 [generator]
 interface = plc
 polarity_ms = 50
+servo_v = plc
 fault_words = 3 no cooling water
 [tech]
 table = paper.tech
 """
 
-# A generator on the same bus instead, which tells what it has.
-CAN = GAP.replace("pump = 7\n", "") + """
-[generator]
-interface = can
-can_interface = vcan1
-can_id = 1009
-ignition_v = can 1010 byte 0
-told_peak_a = can 1011 byte 0 scale 0.1
-told_on_us = can 1011 byte 2 scale 0.1
-told_off_us = can 1011 byte 4 scale 0.1
-told_ignition_v = can 1011 byte 6
-confirm_s = 0.5
+# A generator on the same bus instead, as the shipped example lays it out.
+EXAMPLE = (ROOT / "examples/machine-can402.ini").read_text()
+CAN = GAP.replace("pump = 7\n", "") + re.search(
+    r"^\[generator\]\n.*?(?=^\[)", EXAMPLE, re.M | re.S)[0].replace(
+        "can0", "vcan1") + """confirm_s = 0.5
+[tech]
+table = paper.tech
 """
 
 # C200 as published; the others differ in all, and in the polarity alone.
-PAPER = """condition, peak_a [A], on_us [us], off_us [us], ignition_v [V], polarity
-C200, 6, 8, 20, 180, 1
-C201, 15.5, 50, 100, 120, -1
-C202, 15.5, 50, 100, 120, 1
+PAPER = """condition, peak_a [A], on_us [us], off_us [us], ignition_v [V], servo_v [V], polarity
+C200, 6, 8, 20, 180, 15, 1
+C201, 15.5, 50, 100, 120, 22.5, -1
+C202, 15.5, 50, 100, 120, 22.5, 1
 """
-COUNTS = {"C200": (60, 80, 200, 1800, 0), "C201": (155, 500, 1000, 1200, 1),
-          "C202": (155, 500, 1000, 1200, 0)}
+COUNTS = {"C200": (60, 80, 200, 1800, 150, 0),
+          "C201": (155, 500, 1000, 1200, 225, 1),
+          "C202": (155, 500, 1000, 1200, 225, 0)}
 
 PAPER_JOB = ("G21 G90 T84\nC200\nG1 X0.02 F6\nC201\nG1 X0.04\nC202\nG1 X0.06\n"
              "C200\nG1 X0.04\nM30\n")
@@ -62,6 +60,8 @@ def run():
         "can_generator.py": (HERE / "guest/can_generator.py").read_text(),
         "edmd.eds": (ROOT / "messages/edmd.eds").read_text(),
         "plc_sets.py": (HERE / "guest/plc_sets.py").read_text(),
+        "st.py": (HERE / "guest/st.py").read_text(),
+        "edmd.st": (ROOT / "examples/edmd.st").read_text(),
     }, "-d"))
 
 
@@ -72,10 +72,12 @@ def said(run, name):
 
 
 def edges(run, name):
-    """(time, level) of the line that allows sparks."""
+    """(time, level) of the line that allows sparks, where it changes: the trace has
+    each write."""
     rows = [line.split() for line in run.text(f"{name}.trace").splitlines()]
-    return [(float(t), int(level)) for t, line, level, *_ in rows
-            if line == "0"]
+    all_of = [(float(t), int(level)) for t, line, level, *_ in rows if line == "0"]
+    return [now for now, was in zip(all_of, [(0, 0)] + all_of)
+            if now[1] != was[1]]
 
 
 def sparks(run, name):
@@ -88,7 +90,7 @@ def sparks(run, name):
 def values_at(s, time):
     real = [v for t, v in s["generator"] if t <= time][-1]
     return (real["Current"], real["OnTime"], real["OffTime"],
-            real["Voltage"], real["Negative"])
+            real["Voltage"], real["Servo"], real["Negative"])
 
 
 def test_each_cut_has_its_condition_from_its_first_spark(run):
@@ -170,6 +172,14 @@ def test_a_walk_finds_a_bit_that_does_not_turn(run):
     assert odd and all(f == "peak_a" and round(10 * float(v)) & 64
                        for f, v in odd), text
     assert run.text("walk-stuck.rc") != "0\n"
+
+
+def test_c200_reaches_the_shipped_example_whole(run):
+    rows = [r.split() for r in run.text("cut-can.txt").splitlines()]
+    told = {r[0]: float(r[4]) for r in rows if r[2:3] == ["can"] and "-" not in r}
+    assert {f: told[f] for f in ("peak_a", "on_us", "off_us", "ignition_v",
+                                 "servo_v")} == {
+        "peak_a": 6, "on_us": 8, "off_us": 20, "ignition_v": 180, "servo_v": 15}
 
 
 def test_lines_tell_nothing_that_a_walk_could_compare(run):

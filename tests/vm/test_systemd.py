@@ -44,12 +44,23 @@ def test_what_is_shared_is_made_for_the_group_and_nobody_else(systemd):
 
 
 def test_a_program_on_the_network_sees_no_key(systemd):
-    """It is in group edm, for the status."""
+    """It is in group edm, for the status and the socket of edmd-jobs."""
     said = systemd.text("dds-sees")
     print(said)
     assert "(edm)" in said and "\n4\n" in said
     assert "secret" not in said
-    assert said.count("Permission denied") == 5
+    assert said.count("Permission denied") == 4
+
+
+def test_somebody_is_called_by_a_unit_that_is_off_at_first(systemd):
+    said = systemd.words("notify")
+    print(systemd.text("notify"), systemd.text("journal"))
+    assert said["enabled"] == "disabled"
+    assert said["without-file"] == "no inactive"
+    assert said["active"] == "active/running"
+    assert said["user"] not in ("root", "edmd", "edm-jobs")
+    assert (said["called"], said["called-again"]) == ("0", "0")
+    assert '"machine": "vm"' in systemd.text("notify-called")
 
 
 def test_the_unit_lets_it_have_its_chips(systemd):

@@ -328,12 +328,13 @@ class Client:
     def submit(self, text: bytes, name: str, id: str | None = None,
                hold: bool = False, timeout: float = 120.0,
                from_line: int = 0, from_mm: float = 0.0,
-               electrode: int = 0) -> Job:
+               electrode: int = 0, setting: str = "") -> Job:
         """Send a job; returns when it is in the queue.
 
         from_line, from_mm: begin at this line of the text, or at this place
         of its path; the job then waits for start.
         electrode: it begins with this one; 0: with the one in the holder.
+        setting: what is set for it, as "taper=3 turn=90" (docs/3b.md).
         id: the same id twice is one job; drawn without.
         name: for people; its end names the dialect.
         timeout: for all of it, compiling too.
@@ -350,7 +351,7 @@ class Client:
             return JobChunk(
                 time.time_ns() // 1000, self.name, seqs[i], job, name,
                 len(text), digest, i, len(pieces), i * CHUNK, hold, from_line,
-                from_mm, electrode, pieces[i]).encode()
+                from_mm, electrode, setting, pieces[i]).encode()
 
         try:
             verdict = self._send_chunks(seqs, chunk, timeout)

@@ -17,8 +17,8 @@ Bytes = bytes
 SIGNED = bytes.fromhex("49657b54b950317d")
 COMMAND = bytes.fromhex("633b130fba8a2ccf")
 ACK = bytes.fromhex("e7a36102b59e523d")
-JOB_CHUNK = bytes.fromhex("9e1f02d601e2f309")
-STATUS = bytes.fromhex("3ea8683ad0bd61bc")
+JOB_CHUNK = bytes.fromhex("02d6b52732df0242")
+STATUS = bytes.fromhex("7ec5d2a64a6aab0a")
 EVENT = bytes.fromhex("15ff8b6c83f6aeb8")
 
 
@@ -148,6 +148,7 @@ class JobChunk:
     from_line: int = 0
     from_mm: float = 0.0
     electrode: int = 0
+    setting: str = ""
     data: Bytes = b""
 
     def encode(self) -> Bytes:
@@ -166,6 +167,7 @@ class JobChunk:
                 + put.int32_t(self.from_line)
                 + put.double(self.from_mm)
                 + put.int32_t(self.electrode)
+                + put.string(self.setting)
                 + put.int32_t(len(self.data)) + self.data)
 
     @staticmethod
@@ -186,6 +188,7 @@ class JobChunk:
             r.int32_t(),
             r.double(),
             r.int32_t(),
+            r.string(),
             r.take(r.int32_t()),
         )
         r.end()
@@ -261,6 +264,7 @@ class Status:
     told_polarity: float = 0.0
     told_ignition_v: float = 0.0
     told_iso: float = 0.0
+    told_servo_v: float = 0.0
     told_opens: float = 0.0
     told_sparks: float = 0.0
     told_arcs: float = 0.0
@@ -336,6 +340,7 @@ class Status:
                 + put.double(self.told_polarity)
                 + put.double(self.told_ignition_v)
                 + put.double(self.told_iso)
+                + put.double(self.told_servo_v)
                 + put.double(self.told_opens)
                 + put.double(self.told_sparks)
                 + put.double(self.told_arcs)
@@ -406,6 +411,7 @@ class Status:
             r.double(),
             r.string(),
             r.string(),
+            r.double(),
             r.double(),
             r.double(),
             r.double(),

@@ -26,7 +26,7 @@ from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
+from urllib.parse import quote, urlsplit
 
 from .client import Client, NoAnswer, Refused
 from .keys import KeyFileError
@@ -37,7 +37,7 @@ KINDS = ("fault", "stands", "interrupted", "lost", "done")
 OWN_STANDS = ("", "ready", "held", "reset")
 SEND_S, SILENT_S = 15.0, 10.0
 AGAIN_S, AGAIN_MAX_S = 5.0, 300.0
-WAITING_MAX = 200
+WAITING_MAX, TEXT_MAX = 200, 1000
 
 
 class Wrong(Exception):
@@ -56,6 +56,46 @@ class Message:
     text: str
     link: str
     utime: int
+
+
+class Kept:
+    """Messages that wait, in a file, so that a kill loses none of them.  Of a
+    cause only the last one waits."""
+
+    def __init__(self, path: Path) -> None:
+        self.path, self.waits = path, OrderedDict[str, Message]()
+        with contextlib.suppress(OSError, ValueError, TypeError):
+            for one in json.loads(path.read_text()):
+                self.waits[one["cause"]] = Message(**one)
+
+    def put(self, m: Message, whose: str) -> None:
+        """The oldest is given up if too many wait."""
+        self.waits[m.cause] = m
+        if len(self.waits) > WAITING_MAX:
+            lost = self.waits.popitem(last=False)[1]
+            say(f"{whose}: over {WAITING_MAX} wait; given up: {lost.text}")
+        self.write()
+
+    def drop(self, m: Message) -> None:
+        """It got there, unless there is another of its cause by now."""
+        if self.waits.get(m.cause) is m:
+            del self.waits[m.cause]
+            self.write()
+
+    def write(self) -> None:
+        """Whole or not at all."""
+        write_file(self.path, [asdict(m) for m in self.waits.values()],
+                   "what waits is lost if this ends")
+
+
+def write_file(path: Path, what: Any, otherwise: str) -> None:
+    """Whole, or the old one stays and the journal says what follows."""
+    new = path.with_name(path.name + ".new")
+    try:
+        new.write_text(json.dumps(what))
+        new.replace(path)
+    except OSError as e:
+        say(f"{new}: {e.strerror}; {otherwise}")
 
 
 # -- Ways to somebody: each raises an Exception if it did not get there
@@ -136,12 +176,13 @@ def way_of(url: str) -> Callable[[Message], None]:
 
 class Target:
     """Somebody who is called, by a thread of his own: a way that hangs keeps
-    nobody waiting.  Of a cause only the last message waits."""
+    nobody waiting."""
 
-    def __init__(self, name: str, url: str, kinds: tuple[str, ...]) -> None:
+    def __init__(self, name: str, url: str, kinds: tuple[str, ...],
+                 state: Path) -> None:
         self.name, self.kinds = name, kinds
         self._send = way_of(url)
-        self._waits: OrderedDict[str, Message] = OrderedDict()
+        self._kept = Kept(state / f"waits-{quote(name, safe='')}.json")
         self._new, self._down = threading.Condition(), False
         threading.Thread(target=self._run, daemon=True).start()
 
@@ -150,17 +191,8 @@ class Target:
         if m.kind not in self.kinds:
             return
         with self._new:
-            self._waits[m.cause] = m
-            if len(self._waits) > WAITING_MAX:
-                lost = self._waits.popitem(last=False)[1]
-                say(f"{self.name}: over {WAITING_MAX} wait; given up: "
-                    f"{lost.text}")
+            self._kept.put(m, self.name)
             self._new.notify()
-
-    def is_empty(self) -> bool:
-        """Has all got there?"""
-        with self._new:
-            return not self._waits
 
     def _try(self, m: Message) -> bool:
         try:
@@ -180,14 +212,13 @@ class Target:
         pause = AGAIN_S
         while True:
             with self._new:
-                while not self._waits:
+                while not self._kept.waits:
                     self._new.wait()
-                m = next(iter(self._waits.values()))
+                m = next(iter(self._kept.waits.values()))
             if self._try(m):
                 pause = AGAIN_S
                 with self._new:
-                    if self._waits.get(m.cause) is m:
-                        del self._waits[m.cause]
+                    self._kept.drop(m)
             else:
                 time.sleep(pause)
                 pause = min(pause * 2, AGAIN_MAX_S)
@@ -232,7 +263,7 @@ def _message(cause: str, kind: str, machine: str, s: Status,
              text: str) -> Message:
     job = s.job_name or s.job
     return Message(cause, kind, machine, s.job, f"{machine}: {kind}",
-                   f"{job}: {text}" if job else text, "", s.utime)
+                   (f"{job}: {text}" if job else text)[:TEXT_MAX], "", s.utime)
 
 
 def is_quiet(hours: tuple[int, int] | None, minute: int) -> bool:
@@ -258,7 +289,7 @@ class Caller:
     def __init__(self, rules: Rules, targets: list[Target]) -> None:
         self.rules, self.targets = rules, targets
         self.told: dict[str, Told] = {}
-        self.later: list[Message] = []      # of quiet hours
+        self.later = Kept(rules.file("later.json"))     # of quiet hours
         self._read()
 
     def _read(self) -> None:
@@ -268,13 +299,9 @@ class Caller:
                          for k, v in old.items()}
 
     def _write(self) -> None:
-        new = self.rules.file("told.json.new")
-        try:
-            new.write_text(json.dumps({
-                k: (v.at, v.seen) for k, v in self.told.items()}))
-            new.replace(self.rules.file("told.json"))
-        except OSError as e:
-            say(f"{new}: {e.strerror}; after a restart it is told again")
+        write_file(self.rules.file("told.json"), {
+            k: (v.at, v.seen) for k, v in self.told.items()},
+            "after a restart it is told again")
 
     def _put(self, m: Message) -> None:
         for t in self.targets:
@@ -305,15 +332,16 @@ class Caller:
             self._put(m)
         if {k: (v.at, v.seen) for k, v in self.told.items()} != before:
             self._write()
-        if not quiet:
-            for m in self.later:
+        if not quiet and self.later.waits:
+            for m in self.later.waits.values():
                 self._put(m)
-            self.later = []
+            self.later.waits.clear()
+            self.later.write()
 
     def ended(self, m: Message, quiet: bool) -> None:
         """A job is over: told once, after the quiet hours if need be."""
         if quiet and m.kind not in self.rules.always:
-            self.later = [*self.later, m][-WAITING_MAX:]
+            self.later.put(m, "quiet hours")
         else:
             self._put(m)
 
@@ -411,7 +439,7 @@ class Service:
         if e.kind == "ended" and e.outcome == "done":
             self.caller.ended(Message(
                 f"done {e.job} {e.utime}", "done", self.rules.machine, e.job,
-                f"{self.rules.machine}: done", e.text, "", e.utime),
+                f"{self.rules.machine}: done", e.text[:TEXT_MAX], "", e.utime),
                 self._quiet())
 
     def look(self, c: Client) -> None:
@@ -437,7 +465,8 @@ class Service:
 def serve(path: str) -> int:
     """Never gives up: edmd-jobs may come later."""
     rules, to = read_file(path)
-    targets = [Target(n, url, kinds) for n, (url, kinds) in to.items()]
+    targets = [Target(n, url, kinds, rules.state)
+               for n, (url, kinds) in to.items()]
     service = Service(rules, Caller(rules, targets))
     say(f"machine {rules.machine}, calls {' '.join(to)}")
     while True:

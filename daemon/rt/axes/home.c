@@ -168,7 +168,23 @@ static enum home_phase begin(struct cycle *c, const struct io_inputs *in)
 		call_own(c, in);
 		return HOME_BEGIN;
 	}
+	if (manual_axis(c)->method == HOME_DRIVE) {
+		h->unplaced |= 1u << h->axis;
+		return HOME_BY_DRIVE;
+	}
 	return is_on(c, in->home) ? HOME_LEAVE : HOME_SEEK;
+}
+
+/* Where its zero is it counts anew, so what was known of its place is gone from
+ * the moment on in which it begins. */
+static enum home_phase by_drive(struct cycle *c, const struct io_inputs *in)
+{
+	if (is_on(c, in->unfound))
+		fault_latch(&c->fault, FAULT_HOME);
+	if (!is_on(c, in->homed))
+		return HOME_BY_DRIVE;
+	call_own(c, in);
+	return HOME_BEGIN;
 }
 
 static enum home_phase seek(struct cycle *c, const struct io_inputs *in)
@@ -260,6 +276,7 @@ static const home_step phases[HOME_NPHASES] = {
 	[HOME_ONTO]	= go_onto,
 	[HOME_INDEX]	= seek_index,
 	[HOME_STAND]	= stand,
+	[HOME_BY_DRIVE]	= by_drive,
 };
 
 bool home_go(struct cycle *c, const struct io_inputs *in)

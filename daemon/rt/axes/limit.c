@@ -16,6 +16,8 @@ void limit_recount(struct limit *l, uint32_t axis, uint32_t more)
 
 bool limit_bars(const struct limit *l, uint32_t axis, int toward)
 {
+	if ((l->low | l->high) >> axis & 1)
+		return (l->wrong | (toward < 0 ? l->low : l->high)) >> axis & 1;
 	return l->on >> axis & 1 && l->side[axis] == toward;
 }
 
@@ -29,27 +31,43 @@ static bool bounces(const struct cycle *c, int axis, int32_t at)
 	return l->met >> axis & 1 && fabs(off) < BOUNCE_MM;
 }
 
+/* Which end it is at: the machine tells, or the direction of the last pulses
+ * does.  Before the first period this edmd has made no pulses. */
+static int side_of(const struct cycle *c, const struct io_inputs *in, int axis)
+{
+	const int high = in->limit_high >> axis & 1;
+	const int low = in->limit_low >> axis & 1;
+
+	return high || low ? high - low :
+	       c->comp.begun ? c->comp.axis[axis].toward : 0;
+}
+
 void limit_guard(struct cycle *c, const struct io_inputs *in)
 {
-	const uint32_t came = in->limit & ~c->limit.on;
+	struct limit *l = &c->limit;
+	const uint32_t came = in->limit & ~l->on;
+	const uint32_t told = in->limit_low | in->limit_high;
 
-	/*
-	 * The direction of the last pulses tells on which side of the axis the
-	 * switch lies. Before the first period this edmd has made no pulses.
-	 */
+	l->low = in->limit_low;
+	l->high = in->limit_high;
+	l->wrong &= told;
 	for (uint32_t m = in->limit; m; m &= m - 1) {
 		const int i = __builtin_ctz(m);
 		const int32_t at = comp_pulses(&c->comp.axis[i]);
+		const bool fresh = came >> i & 1 && !bounces(c, i, at);
 
-		if (came >> i & 1 && !bounces(c, i, at))
-			c->limit.side[i] = c->comp.begun ?
-					   c->comp.axis[i].toward : 0;
-		c->limit.at[i] = at;
+		if (fresh || told >> i & 1)
+			l->side[i] = (int8_t)side_of(c, in, i);
+		if (fresh && told >> i & 1 && cycle_moves(c) &&
+		    l->side[i] * c->comp.axis[i].toward < 0)
+			l->wrong |= 1u << i;
+		l->at[i] = at;
 	}
-	c->limit.on = in->limit;
-	c->limit.met |= in->limit;
-	if ((came && cycle_moves(c)) ||
-	    (in->limit && state_duty[c->state].running))
+	l->on = in->limit;
+	l->met |= in->limit;
+	/* A drive that homes may look for its limit switch. */
+	if ((came & ~manual_drive_homes(c) && cycle_moves(c)) ||
+	    (in->limit & ~told && state_duty[c->state].running))
 		fault_latch(&c->fault, FAULT_LIMIT_SWITCH);
 }
 

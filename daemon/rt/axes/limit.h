@@ -9,6 +9,10 @@
  * slowly.  A switch bounces: one that comes on again beside where it went off
  * lies where it lay.
  *
+ * Inputs of drives tell at which end they are.  Then only the motion toward
+ * that end is barred.  One that comes on where its axis goes the other way is
+ * at the wrong end, and bars both.
+ *
  * Threads: RT-safe.
  */
 #ifndef RT_LIMIT_H
@@ -21,6 +25,9 @@
 
 struct limit {
 	uint32_t on;			/* bit per axis */
+	uint32_t low, high;		/* ... and it is told at which end */
+	uint32_t wrong;			/* ... but its axis went the other
+					 * way */
 	int8_t side[INTERP_NAXES];	/* direction from the axis to its
 					 * switch, +1 or -1; 0: not known */
 	uint32_t met;			/* bit per axis; it was on: */

@@ -23,6 +23,24 @@ uint32_t manual_unhomed(const struct cycle *c)
 	return (axes & ~c->manual.homed) | c->manual.unplaced;
 }
 
+uint32_t manual_by_drive(const struct cycle *c)
+{
+	uint32_t axes = 0;
+
+	for (uint32_t i = 0; i < INTERP_NAXES; i++)
+		if (c->config.axis[i].method == HOME_DRIVE)
+			axes |= 1u << i;
+	return axes;
+}
+
+uint32_t manual_drive_homes(const struct cycle *c)
+{
+	const struct manual *h = &c->manual;
+
+	return c->state == STATE_HOME && h->phase == HOME_BY_DRIVE &&
+	       !h->halt ? 1u << h->axis : 0;
+}
+
 const struct manual_axis *manual_axis(const struct cycle *c)
 {
 	return &c->config.axis[c->manual.axis];
@@ -273,7 +291,7 @@ int manual_home(struct cycle *c, uint32_t axis)
 			todo |= 1u << i;
 	if (todo == 0)
 		return ANSWER_BAD_ARGUMENT;
-	if (c->limit.on & todo)
+	if (c->limit.on & todo & ~manual_by_drive(c))
 		return ANSWER_AT_LIMIT;
 	for (uint32_t left = todo; left; left &= left - 1)
 		home_aim(c, (uint32_t)__builtin_ctz(left));
@@ -294,6 +312,8 @@ int manual_place(struct cycle *c, uint32_t axis, double mm)
 	if (c->state != STATE_IDLE || c->loaded ||
 	    c->axes.phase != AXES_FREE)
 		return ANSWER_WRONG_STATE;
+	if (c->axes.starting)
+		return ANSWER_NOT_UP;
 	if (axis >= INTERP_NAXES || !a->present || a->method != HOME_NONE ||
 	    !isfinite(mm))
 		return ANSWER_BAD_ARGUMENT;
@@ -338,5 +358,5 @@ bool manual_go(struct cycle *c, const struct io_inputs *in)
 	h->halt = manual_ends(c);
 	if (!h->halt)
 		return c->state == STATE_HOME ? home_go(c, in) : jog_go(c);
-	return h->mover.v_mm_s == 0 || manual_stop(c);
+	return !in->homing && (h->mover.v_mm_s == 0 || manual_stop(c));
 }

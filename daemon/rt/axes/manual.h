@@ -15,6 +15,8 @@
  * 			further, slowly onto it again: that edge is home_at_mm
  * 	switch-index	the same, and slowly on to the index mark: that mark is
  * 	absolute	no motion: the drive says where it stands
+ * 	drive		the drive finds its zero by itself, as its own homing
+ * 			method says; until then its place is lost
  * 	none		the operator says that the place shown is right
  *
  * What homing found is a shift between places and pulses (comp.h).  Only the
@@ -49,6 +51,7 @@ enum home_phase {
 	HOME_ONTO,			/* slowly, on it again */
 	HOME_INDEX,			/* slowly, on to the index mark */
 	HOME_STAND,			/* brake, and call the place */
+	HOME_BY_DRIVE,			/* the drive moves by itself */
 	HOME_NPHASES
 };
 
@@ -113,6 +116,12 @@ int manual_home(struct cycle *c, uint32_t axis);
  * For an axis that nothing homes.  Return: enum cycle_answer.
  */
 int manual_place(struct cycle *c, uint32_t axis, double mm);
+
+/** manual_by_drive() - bits of the axes whose drives home by themselves. */
+uint32_t manual_by_drive(const struct cycle *c);
+
+/** manual_drive_homes() - bit of the axis whose drive is to do so now. */
+uint32_t manual_drive_homes(const struct cycle *c);
 
 /** manual_ends() - is it told to end, or the time of its press over? */
 bool manual_ends(const struct cycle *c);

@@ -13,20 +13,41 @@ static bool same(double a, double b)
 
 void asking_init(struct asking *a)
 {
-	*a = (struct asking) { .in_force = true };
+	*a = (struct asking) { .in_force = true, .ignition_v = (double)NAN };
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		a->now[i] = a->place[i] = a->hand[i] = (double)NAN;
 }
 
+static uint32_t tried_fields(const struct asking *a)
+{
+	return a->trial.fields | a->leased.fields;
+}
+
 static bool is_tried(const struct asking *a, int i)
 {
-	return a->trying >> i & 1;
+	return tried_fields(a) >> i & 1;
+}
+
+static double tried(const struct asking *a, int i)
+{
+	return a->leased.fields >> i & 1 ? a->leased.value[i] :
+					   a->trial.value[i];
+}
+
+/* It is tried, or it was, and nobody else asks for it. */
+static bool is_lent(const struct cycle *c, int i)
+{
+	return is_tried(&c->asking, i) ||
+	       (c->asking.lent >> i & 1 && isnan(c->out.pulse[i]));
 }
 
 /* What the place asks for, or who tries the generator. */
 static double asked_for(const struct cycle *c, int i)
 {
-	return is_tried(&c->asking, i) ? c->asking.tried[i] : c->out.pulse[i];
+	const struct asking *a = &c->asking;
+
+	return !is_lent(c, i) ? c->out.pulse[i] :
+	       is_tried(a, i) ? tried(a, i) : a->before[i];
 }
 
 /* ... as the generator can do it. */
@@ -48,29 +69,48 @@ bool asking_takes(const struct cycle *c, uint32_t field, double value)
 {
 	const struct asking_config *k = &c->config.asking;
 
-	if (!k->limited || field >= INTERP_NGENERATOR || isnan(value) ||
-	    k->field[field].by_hand ||
-	    (field == INTERP_TECH_POLARITY && value > 0))
-		return true;
-	return !isnan(process_nearest(&k->field[field], (int)field, value));
+	return !k->limited || field >= INTERP_NGENERATOR ||
+	       process_takes(&k->field[field], (int)field, value);
 }
 
-bool asking_try(struct cycle *c, uint32_t field, double value)
+static void trial_put(struct asking_trial *t, uint32_t i, double value)
 {
-	const struct process_delivers *d = &c->config.asking.field[field];
+	t->value[i] = value;
+	t->fields &= ~(1u << i);
+	t->fields |= (uint32_t)!isnan(value) << i;
+}
+
+bool asking_try(struct cycle *c, uint32_t field, double value, bool leased)
+{
+	const struct process_delivers *d;
 	struct asking *a = &c->asking;
 
 	if (field >= INTERP_NGENERATOR) {
-		a->trying = 0;
+		a->trial.fields = a->leased.fields = 0;
 		return isnan(value);
 	}
+	d = &c->config.asking.field[field];
 	if (!isnan(value) && (d->by_hand ||
 			      isnan(process_nearest(d, (int)field, value))))
 		return false;
-	a->tried[field] = value;
-	a->trying = isnan(value) ? a->trying & ~(1u << field) :
-				   a->trying | 1u << field;
+	if (!isnan(value) && !(a->lent >> field & 1)) {
+		a->before[field] = a->says.tells >> field & 1 ?
+				   a->says.told[field] : (double)NAN;
+		a->lent |= 1u << field;
+		if (d->stays && isnan(a->before[field]))
+			a->unknown |= 1u << field;
+	}
+	trial_put(leased ? &a->leased : &a->trial, field, value);
+	a->lease = leased ? c->config.asking.lease_cycles : a->lease;
 	return true;
+}
+
+/* Who asked for these may have vanished. */
+static void lease_step(struct asking *a)
+{
+	a->lease -= a->lease > 0;
+	if (a->lease == 0)
+		a->leased.fields = 0;
 }
 
 /* -- What a person sets ---------------------------------------------------- */
@@ -81,8 +121,8 @@ static uint32_t unset(const struct cycle *c)
 	uint32_t fields = 0;
 
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
-		if (c->config.asking.field[i].by_hand &&
-		    !isnan(c->out.pulse[i]) &&
+		if (isnan(c->out.pulse[i]) ? c->asking.unknown >> i & 1 :
+		    c->config.asking.field[i].by_hand &&
 		    c->out.pulse[i] != c->asking.hand[i])
 			fields |= 1u << i;
 	return fields;
@@ -112,6 +152,7 @@ static void hear_hand(struct cycle *c)
 	a->path = c->out.path;
 	if (!a->stands || !state_duty[c->state].running)
 		return;
+	a->unknown &= ~a->stands;
 	a->stands = 0;
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		if (!isnan(c->out.pulse[i]))
@@ -153,12 +194,15 @@ static void ask(struct cycle *c)
 	if (!is_the_places(c)) {
 		if (!is_dark(c))
 			return;
-		for (int i = 0; i < INTERP_NGENERATOR; i++)
+		for (int i = 0; i < INTERP_NGENERATOR; i++) {
 			a->now[i] = a->place[i] = wanted(c, i);
+			if (!isnan(c->out.pulse[i]))
+				a->unknown &= ~(1u << i);
+		}
 		a->needed = ++a->version;
 		a->age = 0;
 	}
-	if (is_tried(a, INTERP_TECH_OFF_US))
+	if (is_lent(c, INTERP_TECH_OFF_US))
 		return;
 	off_us = asking_off_us(c, arcing_off_us(c));
 	if (same(off_us, a->now[INTERP_TECH_OFF_US]))
@@ -185,8 +229,8 @@ static void ask_freely(struct cycle *c)
 
 	memcpy(now, c->out.pulse, sizeof(now));
 	now[INTERP_TECH_OFF_US] = arcing_off_us(c);
-	for (int i = 0; a->trying && i < INTERP_NGENERATOR; i++)
-		now[i] = is_tried(a, i) ? a->tried[i] : now[i];
+	for (int i = 0; a->lent && i < INTERP_NGENERATOR; i++)
+		now[i] = is_lent(c, i) ? asked_for(c, i) : now[i];
 	/* Hardly ever is there anything new. */
 	if (memcmp(now, a->now, sizeof(now)) == 0)
 		return;
@@ -199,15 +243,34 @@ static void ask_freely(struct cycle *c)
 	}
 }
 
+/* Until it has what it was asked for, it may have what it had. */
+static void bound_ignition(struct asking *a)
+{
+	const double now = a->now[INTERP_TECH_IGNITION_V];
+
+	if (a->has || isnan(now) || !(a->ignition_v > now))
+		a->ignition_v = now;
+}
+
+/* It has it again, and keeps it. */
+static void give_back(struct cycle *c)
+{
+	if (c->asking.has && !c->loaded)
+		c->asking.lent = tried_fields(&c->asking);
+}
+
 void asking_step(struct cycle *c, const struct io_inputs *in)
 {
 	struct asking *a = &c->asking;
 
 	a->says = in->generator;
 	a->age++;
+	lease_step(a);
 	if (!c->config.asking.limited) {
 		ask_freely(c);
 		a->has = is_confirmed(c, a->version);
+		bound_ignition(a);
+		give_back(c);
 		return;
 	}
 	hear_hand(c);
@@ -218,6 +281,8 @@ void asking_step(struct cycle *c, const struct io_inputs *in)
 	a->in_force = is_the_places(c) && !unset(c) &&
 		      is_confirmed(c, a->needed);
 	a->has = is_the_places(c) && is_confirmed(c, a->version);
+	bound_ignition(a);
+	give_back(c);
 }
 
 bool asking_waits(const struct cycle *c)

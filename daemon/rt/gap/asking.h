@@ -14,7 +14,9 @@
  * that follows says that it is set.
  *
  * Without a job, values may be asked for to try the generator.  A job takes
- * them back.
+ * them back, and so does the end of a lease.  A value that nobody asks for then
+ * is the one that the generator told before it was tried: it would keep the
+ * last one.  If it did not tell it, a person must set it.
  *
  * Threads: RT-safe.
  */
@@ -31,7 +33,14 @@ struct asking_config {
 	bool answers;			/* the generator says what is */
 	uint64_t settle_cycles;		/* if it does not */
 	uint64_t polarity_cycles;	/* without sparks, before a change */
+	uint64_t lease_cycles;		/* of what is tried */
 	struct process_delivers field[INTERP_NGENERATOR];
+};
+
+/* What is asked for without a job. */
+struct asking_trial {
+	uint32_t fields;		/* a bit of each */
+	double value[INTERP_NGENERATOR];
 };
 
 struct asking {
@@ -47,10 +56,17 @@ struct asking {
 	uint32_t stands;		/* ... or is to set, a bit of each: it
 					 * stands */
 	uint32_t path;			/* io_outputs.path of these */
-	uint32_t trying;		/* without a job, a bit of each ... */
-	double tried[INTERP_NGENERATOR];	/* ... asked for */
+	struct asking_trial trial, leased;	/* this one goes first ... */
+	uint64_t lease;			/* ... and ends in so many periods */
+	uint32_t lent;			/* a bit of each that was tried, and
+					 * is not again ... */
+	double before[INTERP_NGENERATOR];	/* ... as it was told */
+	uint32_t unknown;		/* ... or was not: a person must set it
+					 * for one who does not give it */
 	struct io_generator says;	/* in the last period */
 	bool has;			/* the generator has all of `now` */
+	double ignition_v;		/* the highest that it may have; NAN:
+					 * its own */
 };
 
 /** asking_init() - nothing is asked yet. */
@@ -71,10 +87,11 @@ bool asking_takes(const struct cycle *c, uint32_t field, double value);
 
 /**
  * asking_try() - without a job, ask for @value of field @field; NAN: no more.
- * A @field beyond the last one is all of them.
+ * A @field beyond the last one is all of them.  @leased: for lease_cycles, of
+ * all that is leased, since the last one; then for what is not leased.
  * Return: false if it cannot be asked for.
  */
-bool asking_try(struct cycle *c, uint32_t field, double value);
+bool asking_try(struct cycle *c, uint32_t field, double value, bool leased);
 
 /** asking_off_us() - the off time that comes of asking for @off_us; NAN: it
  *  cannot be asked for. */

@@ -37,7 +37,7 @@ static void put_polarity(struct cycle *c)
 	const struct conditions *p = &c->conditions;
 	double *to = &c->out.pulse[INTERP_TECH_POLARITY];
 
-	*to = p->said ? (p->said_negative ? -1 : 1) :
+	*to = p->said == INTERP_AUX_POWER_NEGATIVE ? -1 : p->said ? 1 :
 	      c->cursor.p.conds[p->cond].tech.v[INTERP_TECH_POLARITY];
 	for (uint32_t i = 0; i < p->nsets; i++) {
 		if (p->set[i].cond == p->cond &&
@@ -48,6 +48,12 @@ static void put_polarity(struct cycle *c)
 		*to = 1;
 }
 
+/* What edmd's own servo goes by too; NAN: it does not cross. */
+static double reference(const struct cycle *c, int field, double value)
+{
+	return c->config.asking.field[field].there ? value : (double)NAN;
+}
+
 static void put(struct cycle *c, const struct interp_tech *t)
 {
 	c->gap = c->config.gap;
@@ -56,10 +62,10 @@ static void put(struct cycle *c, const struct interp_tech *t)
 		double *at = process_setting((enum interp_tech_id)i, &c->gap,
 					     &c->jump);
 
-		if (i < INTERP_NGENERATOR)
-			c->out.pulse[i] = t->v[i];
-		else if (at && interp_tech_given(t, (enum interp_tech_id)i))
+		if (at && interp_tech_given(t, (enum interp_tech_id)i))
 			*at = t->v[i];
+		if (i < INTERP_NGENERATOR)
+			c->out.pulse[i] = at ? reference(c, i, *at) : t->v[i];
 	}
 	if (t->v[INTERP_TECH_JUMP_EVERY_S] > 0)
 		c->jump.every.cycles = (uint64_t)fmax(1, floor(
@@ -101,11 +107,35 @@ static bool apply(struct cycle *c, uint16_t cond)
 	return true;
 }
 
+/* Over M3 and M4, either way.  Return: has it come to another one? */
+static bool hear_program(struct cycle *c)
+{
+	const struct interp_seg *s = c->cursor.p.segs;
+	struct conditions *p = &c->conditions;
+	const uint32_t was = p->said;
+
+	while (p->at != c->cursor.index) {
+		const bool back = p->at > c->cursor.index;
+		const struct interp_seg *over = &s[back ? p->at-- : ++p->at];
+		const uint32_t aux = INTERP_AUX_OF(over->arg);
+
+		if (over->kind != INTERP_AUX || aux > INTERP_AUX_POWER_NEGATIVE)
+			continue;
+		if (back || aux == INTERP_AUX_POWER_OFF)
+			p->said = INTERP_AUX_WAS(over->arg);
+		else
+			p->said = aux;
+	}
+	return p->said != was;
+}
+
 bool conditions_begin(struct cycle *c)
 {
 	c->conditions.nsets = 0;
-	c->conditions.said = false;
-	return apply(c, c->cursor.seg.cond);
+	c->conditions.at = c->conditions.said = 0;
+	hear_program(c);
+	c->conditions.of_cut = c->cursor.seg.cond;
+	return apply(c, c->conditions.of_cut);
 }
 
 /* Behind an action, where there are to be sparks, it is that of the cut ahead:
@@ -128,14 +158,11 @@ bool conditions_follow(struct cycle *c)
 {
 	const uint16_t cond = cond_here(c);
 
+	if (c->state != STATE_JUMP && c->state != STATE_RETRACT)
+		c->conditions.of_cut = cond;
+	if (hear_program(c))
+		put_polarity(c);
 	return cond == c->conditions.cond || apply(c, cond);
-}
-
-void conditions_say(struct cycle *c, bool negative)
-{
-	c->conditions.said = true;
-	c->conditions.said_negative = negative;
-	put_polarity(c);
 }
 
 /* -- set ------------------------------------------------------------------- */
@@ -146,13 +173,13 @@ static bool is_used(uint32_t field)
 	       interp_tech_is_live((enum interp_tech_id)field);
 }
 
-/* The slot where the field is set in this condition, or where it would be
- * set. */
+/* The slot where the field is set in the condition of the cut, or where it
+ * would be. */
 static uint32_t place_of(const struct conditions *p, uint32_t field)
 {
 	uint32_t i = 0;
 
-	while (i < p->nsets && !(p->set[i].cond == p->cond &&
+	while (i < p->nsets && !(p->set[i].cond == p->of_cut &&
 				 p->set[i].field == field))
 		i++;
 	return i;
@@ -163,7 +190,7 @@ static void change(struct conditions *p, uint32_t at, uint32_t field,
 {
 	if (!isnan(value)) {
 		p->nsets += at == p->nsets;
-		p->set[at] = (struct conditions_set) { value, p->cond,
+		p->set[at] = (struct conditions_set) { value, p->of_cut,
 						    (uint8_t)field };
 	} else if (at < p->nsets) {
 		p->set[at] = p->set[--p->nsets];
@@ -175,6 +202,7 @@ enum conditions_result conditions_set(struct cycle *c, uint32_t field,
 {
 	const struct conditions was = c->conditions;
 	const uint32_t at = place_of(&was, field);
+	struct interp_tech of_cut;
 
 	if (!is_used(field))
 		return CONDITIONS_BAD;
@@ -185,7 +213,8 @@ enum conditions_result conditions_set(struct cycle *c, uint32_t field,
 	if (at == CONDITIONS_SETS_MAX && !isnan(value))
 		return CONDITIONS_FULL;
 	change(&c->conditions, at, field, value);
-	if (apply(c, was.cond))
+	of_cut = wanted(c, was.of_cut);
+	if (fits(c, &of_cut) && apply(c, was.cond))
 		return CONDITIONS_DONE;
 	c->conditions = was;
 	return CONDITIONS_BAD;
@@ -221,12 +250,20 @@ bool conditions_restore(struct cycle *c, const struct conditions_set *sets,
 
 double conditions_value(const struct cycle *c, uint32_t field)
 {
-	struct interp_tech now;
+	const struct conditions *p = &c->conditions;
+	struct interp_tech now, of_cut;
 
 	if (!is_used(field))
 		return (double)NAN;
 	if (field == INTERP_TECH_POLARITY)
 		return io_is_negative(&c->out) ? -1 : 1;
+	if (p->of_cut != p->cond) {
+		of_cut = wanted(c, p->of_cut);
+		process_base(&now, &c->config.gap, &c->config.jump);
+		interp_tech_over(&now, &of_cut);
+		return now.v[field];
+	}
 	process_base(&now, &c->gap, &c->jump);
-	return field < INTERP_NGENERATOR ? c->out.pulse[field] : now.v[field];
+	return field < INTERP_NGENERATOR && !process_is_setting((int)field) ?
+	       c->out.pulse[field] : now.v[field];
 }

@@ -7,8 +7,9 @@
  * back too.  What is `set` while a condition is in force belongs to that
  * condition until the job ends, and replaces both.
  *
- * Polarity: a `set` counts most, then what the program said last by M3 or M4,
- * then the condition.  Without any of them the electrode is positive.
+ * Polarity: a `set` counts most, then the last M3 or M4 of the program before
+ * the place, then the condition.  Without any of them the electrode is
+ * positive.
  *
  * Threads: RT-safe.
  */
@@ -33,7 +34,11 @@ struct conditions_set {
 /* Private to conditions.c. */
 struct conditions {
 	uint16_t cond;			/* whose values are in force */
-	bool said, said_negative;	/* by M3 or M4 */
+	uint32_t at;			/* the segment up to which it knows
+					 * ... */
+	uint32_t said;			/* ... the last M3 or M4, enum
+					 * interp_aux; 0: none */
+	uint16_t of_cut;		/* of where it last did not go back */
 	uint32_t nsets;
 	struct conditions_set set[CONDITIONS_SETS_MAX];
 };
@@ -53,7 +58,10 @@ bool conditions_begin(struct cycle *c);
  *  Return: as conditions_begin(). */
 bool conditions_follow(struct cycle *c);
 
-/** conditions_set() - @value NAN takes a set back. */
+/**
+ * conditions_set() - in the condition at this place; in a jump or a retract, in
+ * that of the cut which it came from.  @value NAN takes a set back.
+ */
 enum conditions_result conditions_set(struct cycle *c, uint32_t field,
 				      double value);
 
@@ -64,11 +72,10 @@ enum conditions_result conditions_set(struct cycle *c, uint32_t field,
 bool conditions_restore(struct cycle *c, const struct conditions_set *sets,
 		     uint32_t n);
 
-/** conditions_value() - in force; NAN: the generator's own, or not a field that
- *  the cycle goes by. */
+/**
+ * conditions_value() - in force where a set would be.  NAN: the generator's
+ * own, or not a field that the cycle goes by.
+ */
 double conditions_value(const struct cycle *c, uint32_t field);
-
-/** conditions_say() - M3 or M4. */
-void conditions_say(struct cycle *c, bool negative);
 
 #endif /* RT_CONDITIONS_H */

@@ -36,9 +36,10 @@ double gap_window_low_v(const struct cycle *c)
 
 /* -- Can it be true? ------------------------------------------------------- */
 
+/* A reading is of the pulses that were, not of those of the place. */
 static double ignition_v(const struct cycle *c)
 {
-	const double asked = c->out.pulse[INTERP_TECH_IGNITION_V];
+	const double asked = c->asking.ignition_v;
 
 	return asked > 0 ? asked : c->gap.ignition_v;
 }

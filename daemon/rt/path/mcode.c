@@ -90,3 +90,9 @@ bool mcode_meet(struct cycle *c, uint32_t next, uint32_t arg)
 	pass(c, next);
 	return true;
 }
+
+uint32_t mcode_line(const struct cycle *c)
+{
+	return c->mcode.waits && c->mcode.at ?
+	       c->cursor.p.segs[c->mcode.at].line : c->cursor.seg.line;
+}

@@ -56,4 +56,8 @@ void mcode_over(struct cycle *c, uint32_t i);
  *  Return: true to pass it, false to wait. */
 bool mcode_meet(struct cycle *c, uint32_t next, uint32_t arg);
 
+/** mcode_line() - of the program: that of the code it waits for, else that
+ *  where it is. */
+uint32_t mcode_line(const struct cycle *c);
+
 #endif /* RT_MCODE_H */

@@ -169,7 +169,8 @@ static void note_moves(struct cycle *c, const struct io_inputs *in)
 		r->moved_way[i] = by < 0 ? -1 : 1;
 		moved |= 1u << i;
 	}
-	r->adrift &= ~moved;
+	if (!in->axes_off)
+		r->adrift &= ~moved;
 	r->moved_beside = (r->moved_beside & ~moved) |
 			  (escape_is_out(&c->escape) ? moved : 0);
 }

@@ -60,7 +60,8 @@ struct resync {
 	int32_t ran_on[INTERP_NAXES];	/* farther than max, by itself */
 	double sure_mm;
 	uint32_t adrift;		/* bit per axis: it was off, and did not
-					 * move since to where it was sent */
+					 * move since, under power, to where it
+					 * was sent */
 	bool sure_beside;		/* ... was beside the path */
 	int32_t seen[INTERP_NAXES];	/* where each axis stands, to
 					 * NEAR_PULSES; */

@@ -299,7 +299,6 @@ static void switch_aux(struct cycle *c, uint32_t what)
 	case INTERP_AUX_POWER_POSITIVE:
 	case INTERP_AUX_POWER_NEGATIVE:
 		c->job.power_off = false;
-		conditions_say(c, what == INTERP_AUX_POWER_NEGATIVE);
 		break;
 	case INTERP_AUX_PUMP_ON:
 	case INTERP_AUX_PUMP_OFF:
@@ -357,7 +356,7 @@ enum walk_deed walk_action(struct cycle *c)
 	if (s.kind == INTERP_MCODE && !mcode_meet(c, next, s.arg))
 		return ACTION_WAIT;
 	if (first && s.kind == INTERP_AUX)
-		switch_aux(c, s.arg);
+		switch_aux(c, INTERP_AUX_OF(s.arg));
 	if (first && s.kind == INTERP_TIMED_END)
 		timed_over(c, next);
 	c->job.action_done = first ? next : c->job.action_done;

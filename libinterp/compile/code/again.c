@@ -75,7 +75,7 @@ static bool is_pattern(const struct nc_reader *r)
 	return (b->groups & ~NC_BIT(NC_FEED)) == NC_BIT(NC_MOTION) &&
 	       b->code[NC_MOTION]->value < NC_SPLINE &&
 	       !(b->words & NC_BIT(NC_SPARE)) && !r->mapped && !r->loose &&
-	       !r->curve.open;
+	       !r->figure.vague && !r->curve.open;
 }
 
 /* The word whose letter comes first of those in @words. */

@@ -15,6 +15,7 @@
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* A shorter length is neither a radius nor a chord. */
 #define NOTHING_MM	1e-6
@@ -38,7 +39,7 @@ const struct nc_plane nc_planes[3] = {
 
 /* How many decimals the word at @at has.  What macros computed has those that a
  * control keeps; so has a length without a point, where it counts in them. */
-static int decimals_of(const struct nc_reader *r, const uint8_t *at)
+int nc_decimals(const struct nc_reader *r, const uint8_t *at)
 {
 	const int kept = r->unit_mm > 1 ? 4 : 3;
 	const uint8_t *p = at + 1;
@@ -62,11 +63,12 @@ static double digit_mm(const struct nc_reader *r, uint32_t words)
 	int most = r->unit_mm > 1 ? DECIMALS_INCH : DECIMALS_MM;
 
 	for (words &= r->block.words; words; words &= words - 1) {
-		const int n = decimals_of(r, r->block.at[__builtin_ctz(words)]);
+		const int n = nc_decimals(r, r->block.at[__builtin_ctz(words)]);
 
 		most = n > most ? n : most;
 	}
-	return r->unit_mm / nc_pow10[most < NC_POW10_MAX ? most : NC_POW10_MAX];
+	return r->scale[INTERP_X] /
+	       nc_pow10[most < NC_POW10_MAX ? most : NC_POW10_MAX];
 }
 
 /* A place that is written to @digit_mm may be so far beside the one meant. */
@@ -146,8 +148,8 @@ static int by_centre(struct nc_reader *r, const struct nc_plane *p,
 	const double *here = nc_here(r);
 	const uint8_t *at = b->code_at[NC_MOTION];
 	const bool has_a = nc_has(r, p->ca), has_b = nc_has(r, p->cb);
-	const double ca = has_a ? b->value[p->ca] * r->unit_mm : 0;
-	const double cb = has_b ? b->value[p->cb] * r->unit_mm : 0;
+	const double ca = has_a ? b->value[p->ca] * r->scale[p->a] : 0;
+	const double cb = has_b ? b->value[p->cb] * r->scale[p->b] : 0;
 
 	if (nc_has(r, p->other))
 		return nc_refuse(r, b->at[p->other], centre_words(r, p),
@@ -204,7 +206,7 @@ static int by_radius(struct nc_reader *r, const struct nc_plane *p,
 		     struct interp_build_arc *arc)
 {
 	const double *here = nc_here(r);
-	const double value = r->block.value[NC_R] * r->unit_mm;
+	const double value = r->block.value[NC_R] * r->scale[p->a];
 	const double radius = fabs(value);
 	const double da = end_mm[p->a] - here[p->a];
 	const double db = end_mm[p->b] - here[p->b];
@@ -308,7 +310,7 @@ static int top(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 					    "half a centre under G90.1");
 		c->centre_mm[i] = top_centre_from(r, i, bottom) +
 				  (nc_has(r, slot) ? b->value[slot] *
-				   r->unit_mm : 0);
+				   r->scale[INTERP_U + i] : 0);
 	}
 	if (hypot(c->centre_mm[0] - here[INTERP_U],
 		  c->centre_mm[1] - here[INTERP_V]) < NOTHING_MM)
@@ -367,6 +369,59 @@ static double sweep_of(const struct nc_reader *r, const struct nc_plane *p,
 	return interp_build_sweep(from_mm, to_mm, centre_mm, clockwise);
 }
 
+/* -- Turns ----------------------------------------------------------------- */
+
+#define TURNS_MOST	1000
+
+/* P of an arc: how often it goes round, with the last part of a turn. */
+static int turns_of(struct nc_reader *r, int *ret)
+{
+	const double p = nc_has(r, NC_P) ? r->block.value[NC_P] : 1;
+
+	*ret = (int)p;
+	if (p == floor(p) && p >= 1 && p <= TURNS_MOST)
+		return 0;
+	return nc_refuse(r, r->block.at[NC_P], "P1 to P1000", "an arc of %g "
+			 "turns", p);
+}
+
+/* One arc, or a whole turn of one. */
+static int go_once(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		   const struct interp_build_arc *arc)
+{
+	int err = nc_room(r);
+
+	if (err)
+		return err;
+	if (r->tool.on)
+		return nc_tip_arc(r, end_mm, arc);
+	err = go_round(r, end_mm, arc);
+	return nc_placed(r, err, end_mm);
+}
+
+/* The other axes go on evenly. */
+static int go_turns(struct nc_reader *r, const double end_mm[INTERP_NAXES],
+		    struct interp_build_arc arc, int turns)
+{
+	const double whole = arc.sweep < 0 ? -2 * M_PI : 2 * M_PI;
+	const double all = arc.sweep + (turns - 1) * whole, last = arc.sweep;
+	double from_mm[INTERP_NAXES], to_mm[INTERP_NAXES];
+	int err = 0;
+
+	memcpy(from_mm, nc_here(r), sizeof(from_mm));
+	arc.sweep = whole;
+	for (int k = 1; !err && k < turns; k++) {
+		for (int i = 0; i < INTERP_NAXES; i++)
+			to_mm[i] = from_mm[i] + k * whole / all *
+				   (end_mm[i] - from_mm[i]);
+		to_mm[arc.axis_a] = from_mm[arc.axis_a];
+		to_mm[arc.axis_b] = from_mm[arc.axis_b];
+		err = go_once(r, to_mm, &arc);
+	}
+	arc.sweep = last;
+	return err ? err : go_once(r, end_mm, &arc);
+}
+
 int nc_arc(struct nc_reader *r, bool clockwise)
 {
 	const struct nc_plane *p = &nc_planes[r->plane];
@@ -374,7 +429,7 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 		.axis_a = p->a, .axis_b = p->b,
 	};
 	double end_mm[INTERP_NAXES];
-	int err;
+	int err, turns;
 
 	if (r->absent & (NC_BIT(p->a) | NC_BIT(p->b)))
 		return nc_refuse(r, r->block.code_at[NC_MOTION],
@@ -386,14 +441,12 @@ int nc_arc(struct nc_reader *r, bool clockwise)
 		err = centre(r, p, end_mm, clockwise, &arc);
 	arc.sweep = sweep_of(r, p, end_mm, &arc, clockwise);
 	if (!err)
-		err = nc_word(r, false, false);
+		err = turns_of(r, &turns);
 	if (!err)
-		err = nc_room(r);
+		err = nc_word(r, false, false);
 	if (err)
 		return err;
 	r->moved |= NC_BIT(p->a) | NC_BIT(p->b);
-	if (r->tool.on)
-		return nc_tip_arc(r, end_mm, &arc);
-	err = go_round(r, end_mm, &arc);
-	return nc_placed(r, err, end_mm);
+	return turns == 1 ? go_once(r, end_mm, &arc) :
+			    go_turns(r, end_mm, arc, turns);
 }

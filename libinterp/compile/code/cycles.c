@@ -84,7 +84,8 @@ static int take_plane(struct nc_orbit *c)
 	if (nc_has_guides(r) || r->offset_side || r->taper_side ||
 	    r->absent & axes || r->tool.on)
 		return refuse_machine(c);
-	if (r->contour.guides.turn.deg != 0 && p->normal != INTERP_Z)
+	if (interp_turn_is_on(&r->contour.guides.turn) &&
+	    p->normal != INTERP_Z)
 		return nc_refuse(r, c->at, "G17 before it, or a work system "
 				 "that is not turned", "an orbit in the plane "
 				 "%s, where the work is turned by %g degrees",

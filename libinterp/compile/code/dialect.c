@@ -108,7 +108,8 @@ static int compile_records(const struct interp_text *text,
 {
 	struct interp_threeb_options threeb = o->threeb;
 	const struct interp_threeb_read read = {
-		.machine = o->nc.machine, .options = &threeb,
+		.machine = o->nc.machine, .wire = o->nc.wire,
+		.options = &threeb,
 		.feed_mm_s = o->nc.feed_mm_s, .segs_max = o->nc.segs_max,
 	};
 	struct interp_threeb_result done = { 0 };

@@ -115,6 +115,7 @@ static const struct rule {
 	  { MACRO_NONE, MACRO_FANUC, MACRO_LINUXCNC } },
 	{ "dwell_p", RULE(dwell_ms), { "seconds", "milliseconds" }, { 0, 1 } },
 	{ "g10_under_g91", RULE(g91_sets), { "moves", "sets" }, { 0, 1 } },
+	{ "units", RULE(inches), { "millimetres", "inches" }, { 0, 1 } },
 };
 
 static int read_rule(struct reading *f, struct piece key, struct piece value)
@@ -140,7 +141,7 @@ static int read_rule(struct reading *f, struct piece key, struct piece value)
 		      "one of length_without_point centre end feed subprograms "
 		      "conditions_defined registers_defined "
 		      "ways_without_number top_of_wire macros dwell_p "
-		      "g10_under_g91",
+		      "g10_under_g91 units",
 		      "rule", key);
 }
 
@@ -161,9 +162,10 @@ static const struct {
 	{ "top-centre-I", NC_WORD + NC_UI },
 	{ "top-centre-J", NC_WORD + NC_UJ },
 	{ "taper-angle", NC_WORD + NC_ANGLE },
+	{ "R-or-turn", NC_LETTER_R },
 	{ "of-ignored-words", NC_WORD + NC_SPARE },
 	{ "comment", NC_SEMICOLON }, { "block-end", NC_BLOCK_END },
-	{ "top-words", NC_COLON },
+	{ "top-words", NC_COLON }, { "corner-words", NC_COMMA },
 	{ "program-number", NC_WORD + NC_O },
 	{ "program-name", NC_LETTER_NAME },
 	{ "none", NC_BAD },
@@ -174,7 +176,8 @@ static int slot_of(char letter)
 {
 	for (int i = 0; i < NC_NSLOTS; i++) {
 		if (nc_words[i].letter == letter && isupper(letter) &&
-		    i != NC_ANGLE && i != NC_UI && i != NC_UJ)
+		    i != NC_ANGLE && i != NC_UI && i != NC_UJ &&
+		    !(NC_CORNER & NC_BIT(i)))
 			return i;
 	}
 	return -1;
@@ -189,7 +192,7 @@ static void set_class(struct reading *f, unsigned char c, uint8_t class)
 static int refuse_letter(struct reading *f, struct piece p)
 {
 	return refuse(f, p.at, "a letter from A to Z, or semicolon, colon, "
-		      "angle",
+		      "comma, angle",
 		      "letter", p);
 }
 
@@ -261,6 +264,7 @@ static int read_letter(struct reading *f, struct piece key, struct piece value)
 	const bool one = key.n == 1 && isupper((unsigned char)*key.at);
 	const unsigned char c = is(key, "semicolon") ? ';' :
 				is(key, "colon") ? ':' :
+				is(key, "comma") ? ',' :
 				is(key, "angle") ? '<' :
 				one ? (unsigned char)*key.at : 0;
 
@@ -276,10 +280,12 @@ static int read_letter(struct reading *f, struct piece key, struct piece value)
 			return 0;
 		}
 	}
-	return refuse(f, value.at, "code-G code-M code-T, condition, "
+	return refuse(f, value.at, "code-G -M -T, condition, "
 		      "condition-or-axis, condition-S, register, top, "
-		      "top-centre-I, top-centre-J, taper-angle, "
+		      "top-centre-I -J, taper-angle, "
+		      "R-or-turn, "
 		      "of-ignored-words, comment, block-end, top-words, "
+		      "corner-words, "
 		      "program-number, program-name, none, "
 		      "refuse: or ignore-line:",
 		      "a letter cannot be", value);

@@ -16,6 +16,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const struct interp_electrode *find(const struct nc_reader *r,
 					   uint64_t number)
@@ -54,10 +55,22 @@ static int refuse_unknown(struct nc_reader *r, uint64_t number,
 			    "table", (double)number);
 }
 
-static void take(struct nc_reader *r, uint32_t number)
+/* A table that turns the work does not turn the electrode. */
+static int refuse_turned(struct nc_reader *r, const struct interp_electrode *e)
+{
+	return nc_refuse_at(r, r->line, "an electrode with c 0", "electrode "
+			    "%u, which is straight where C stands at %g: C "
+			    "does not turn it on this machine", e->number,
+			    e->by[INTERP_C]);
+}
+
+static int take(struct nc_reader *r, uint32_t number)
 {
 	const struct interp_electrode *e = find(r, number);
 
+	if (e && e->by[INTERP_C] != 0 &&
+	    (!nc_turns_electrode(r) || r->absent & NC_BIT(INTERP_C)))
+		return refuse_turned(r, e);
 	r->electrode = r->next = number;
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const double pulse_mm = r->o->machine->axis[i].pulse_mm;
@@ -66,6 +79,38 @@ static void take(struct nc_reader *r, uint32_t number)
 				     round(e->by[i] / pulse_mm) * pulse_mm : 0;
 	}
 	nc_set_offset(r);
+	return 0;
+}
+
+/* Its middle, or its faces, are not where those of the one before were. */
+static int take_other(struct nc_reader *r, uint32_t number)
+{
+	const uint32_t xy = NC_BIT(INTERP_X) | NC_BIT(INTERP_Y);
+	double was[INTERP_NAXES];
+	int err;
+
+	memcpy(was, r->electrode_by, sizeof(was));
+	err = take(r, number);
+	if (was[INTERP_X] != r->electrode_by[INTERP_X] ||
+	    was[INTERP_Y] != r->electrode_by[INTERP_Y])
+		r->unplaced |= xy;
+	if (was[INTERP_C] != r->electrode_by[INTERP_C])
+		r->unplaced |= NC_BIT(INTERP_C);
+	return err;
+}
+
+int nc_place_electrode(struct nc_reader *r, bool rapid)
+{
+	if (!r->incremental && !nc_has_group(r, NC_MACHINE))
+		r->unplaced &= ~r->block.words;
+	if (rapid || !r->unplaced)
+		return 0;
+	return nc_refuse_at(r, r->line, r->unplaced & NC_BIT(INTERP_C) ?
+			    "G90 G0 with X Y and C before it" :
+			    "G90 G0 with X Y before it",
+			    "a cut before electrode %u, which sits otherwise in "
+			    "its holder than the one before, was sent to its "
+			    "place", r->electrode);
 }
 
 void nc_electrode_at(const struct nc_reader *r, double c_deg,
@@ -73,7 +118,7 @@ void nc_electrode_at(const struct nc_reader *r, double c_deg,
 {
 	const struct interp_turn c =
 		interp_turn_of(nc_is_eccentric(r) && nc_turns_electrode(r) ?
-			       c_deg : 0);
+			       c_deg : 0, false);
 
 	interp_turn_to(&c, r->electrode_by, ret_mm);
 }
@@ -112,10 +157,9 @@ int nc_electrode_begin(struct nc_reader *r)
 		return 0;
 	if (!is_known(r, number))
 		return refuse_unknown(r, number, NULL);
-	r->segs++;
+	/* It is no motion or action of the program. */
 	err = mark(r, number, number != t->held);
-	take(r, number);
-	return err;
+	return err ? err : take(r, number);
 }
 
 static int change(struct nc_reader *r, bool stops, const uint8_t *at)
@@ -131,9 +175,7 @@ static int change(struct nc_reader *r, bool stops, const uint8_t *at)
 	err = nc_room(r);
 	if (!err)
 		err = mark(r, number, stops);
-	if (!err)
-		take(r, number);
-	return err;
+	return err ? err : take_other(r, number);
 }
 
 static int check(struct nc_reader *r, const uint8_t *at)

@@ -197,10 +197,10 @@ static int aux(struct iso_writer *o, struct words *w,
 		[INTERP_AUX_PUMP_OFF]		= "T85",
 	};
 
-	if (seg->arg >= INTERP_NAUX)
+	if (INTERP_AUX_OF(seg->arg) >= INTERP_NAUX)
 		return emit_refuse(o->diag, seg->line, "M3 M4 M5 T84 T85",
 				   "switched output %u", seg->arg);
-	word(w, "%s", names[seg->arg]);
+	word(w, "%s", names[INTERP_AUX_OF(seg->arg)]);
 	return 0;
 }
 

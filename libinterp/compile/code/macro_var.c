@@ -29,7 +29,8 @@ static double *place_of(struct macro_line *l, uint32_t n)
 /* Places are in the units in force, as the program writes them. */
 static double in_units(const struct nc_reader *r, uint32_t axis, double mm)
 {
-	return mm / r->scale[axis];
+	return interp_axis_is_rotary((enum interp_axis)axis) ? mm :
+	       mm / r->unit_mm;
 }
 
 /* The place where the program stands, in the work offset in force or in machine
@@ -43,8 +44,8 @@ static bool position(const struct nc_reader *r, uint32_t n, uint32_t first,
 	if (n < first || i >= INTERP_NAXES)
 		return false;
 	interp_turn_to(&r->contour.guides.turn, nc_here(r), mm);
-	*ret = in_units(r, i, machine ? mm[i] :
-			      nc_here(r)[i] - r->offset_mm[i]);
+	*ret = machine ? in_units(r, i, mm[i]) :
+	       (nc_here(r)[i] - r->offset_mm[i]) / r->scale[i];
 	return true;
 }
 

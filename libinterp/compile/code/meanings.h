@@ -19,7 +19,7 @@
 #define NC_XYZ	(NC_XY | NC_BIT(NC_Z))
 #define NC_IJ	(NC_BIT(NC_I) | NC_BIT(NC_J))
 #define NC_ARC	(NC_AXES | NC_CENTRE | NC_BIT(NC_R) | NC_BIT(NC_UI) | \
-		 NC_BIT(NC_UJ))
+		 NC_BIT(NC_UJ) | NC_CORNER)
 #define NC_ANG	(NC_BIT(NC_A) | NC_BIT(NC_ANGLE))
 #define NC_DOWN	(NC_XYZ | NC_BIT(NC_C))
 #define NC_ROUND (NC_DOWN | NC_CENTRE | NC_BIT(NC_R) | NC_BIT(NC_Q) | \
@@ -28,9 +28,12 @@
 
 #define NC_MEANINGS(W) \
 	W("rapid", MOTION, 0, NC_AXES) \
-	W("line", MOTION, 1, NC_AXES) \
+	W("line", MOTION, 1, NC_AXES | NC_CORNER) \
+	W("line-with-R", MOTION, 1, NC_AXES | NC_CORNER | NC_BIT(NC_R)) \
 	W("arc-clockwise", MOTION, 2, NC_ARC) \
 	W("arc-counter-clockwise", MOTION, 3, NC_ARC) \
+	W("arc-clockwise-with-P", MOTION, 2, NC_ARC | NC_BIT(NC_P)) \
+	W("arc-counter-clockwise-with-P", MOTION, 3, NC_ARC | NC_BIT(NC_P)) \
 	W("cubic", MOTION, NC_SPLINE, \
 	  NC_XY | NC_IJ | NC_BIT(NC_P) | NC_BIT(NC_Q)) \
 	W("parabola", MOTION, NC_PARABOLA, NC_XY | NC_IJ) \
@@ -72,6 +75,17 @@
 	W("corner-conical", TAPER_CORNER, INTERP_CORNER_CONICAL, 0) \
 	W("corner-constant", TAPER_CORNER, INTERP_CORNER_CONSTANT, 0) \
 	W("corner-sharp", TAPER_CORNER, INTERP_CORNER_SHARP, 0) \
+	W("mirror-off", MIRROR, NC_MIRROR_OFF, 0) \
+	W("mirror-axis-off", MIRROR, NC_MIRROR_END, NC_AXES) \
+	W("mirror-at", MIRROR, NC_MIRROR_PLACES, NC_AXES) \
+	W("mirror-x", MIRROR, NC_MIRROR_X, 0) \
+	W("mirror-y", MIRROR, NC_MIRROR_Y, 0) \
+	W("exchange-xy", MIRROR, NC_MIRROR_EXCHANGE, 0) \
+	W("scale-off", SCALE, false, 0) \
+	W("scale", SCALE, true, NC_XYZ | NC_BIT(NC_P)) \
+	W("turn-off", TURN, NC_TURN_OFF, 0) \
+	W("turn", TURN, NC_TURN_ABOUT_XY, NC_AXES | NC_BIT(NC_R)) \
+	W("turn-about-ij", TURN, NC_TURN_ABOUT_IJ, NC_IJ | NC_BIT(NC_R)) \
 	W("tool-tip", TOOL_POINT, NC_TOOL_ANGLES, 0) \
 	W("tool-tip-by-vector", TOOL_POINT, NC_TOOL_VECTOR, 0) \
 	W("tool-tip-off", TOOL_POINT, NC_TOOL_OFF, 0) \
@@ -101,6 +115,7 @@
 	W("power-off", POWER, INTERP_AUX_POWER_OFF, 0) \
 	W("pump-on", PUMP, INTERP_AUX_PUMP_ON, 0) \
 	W("pump-off", PUMP, INTERP_AUX_PUMP_OFF, 0) \
+	W("wire-stop", WIRE_STOP, 0, 0) \
 	W("stop", STOP, NC_HALT, 0) \
 	W("optional-stop", STOP, NC_OPTIONAL_HALT, 0) \
 	W("end", STOP, NC_FINISH, 0) \

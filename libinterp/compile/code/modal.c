@@ -9,13 +9,14 @@ void nc_set_units(struct nc_reader *r, bool inches)
 	r->unit_mm = inches ? 25.4 : 1;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		r->scale[i] = interp_axis_is_rotary((enum interp_axis)i) ?
-			      1 : r->unit_mm;
+			      1 : r->unit_mm * r->figure.scale;
 }
 
 uint32_t nc_origin(const struct nc_reader *r, uint32_t pass, double wire_mm)
 {
 	struct interp_origin o = {
-		.work = r->work, .turn_deg = r->turn_deg[r->work],
+		.work = r->work, .turn_deg = r->contour.guides.turn.deg,
+		.mirrored = r->contour.guides.turn.mirrored,
 		.pass = pass, .npasses = pass ? r->passes.npasses : 0,
 		.wire_mm = wire_mm,
 	};
@@ -24,19 +25,26 @@ uint32_t nc_origin(const struct nc_reader *r, uint32_t pass, double wire_mm)
 	return interp_build_origin(r->build, &o);
 }
 
-void nc_set_offset(struct nc_reader *r)
+void nc_work_origin(const struct nc_reader *r, double ret_mm[INTERP_NAXES])
 {
-	double *mm = r->origin_mm;
-
-	nc_electrode_at(r, r->contour.here_mm[INTERP_C], mm);
+	nc_electrode_at(r, r->contour.here_mm[INTERP_C], ret_mm);
 	/* Under G43.4 it is part of the tool. */
 	if (r->tool.on)
-		mm[INTERP_Z] = 0;
+		ret_mm[INTERP_Z] = 0;
 	for (int i = 0; i < INTERP_NAXES; i++)
-		mm[i] += r->work_mm[r->work][i];
+		ret_mm[i] += r->work_mm[r->work][i];
+}
+
+void nc_set_offset(struct nc_reader *r)
+{
+	double *mm = r->origin_mm, by[INTERP_NAXES];
+
+	nc_work_origin(r, mm);
 	interp_turn_back(&r->contour.guides.turn, mm, mm);
+	memcpy(by, r->shift_mm, sizeof(by));
+	nc_figure_origin(&r->figure, by);
 	for (int i = 0; i < INTERP_NAXES; i++)
-		r->offset_mm[i] = mm[i] + r->shift_mm[i];
+		r->offset_mm[i] = mm[i] + by[i];
 	/* The second plane is measured from the same origin. */
 	if (nc_has_guides(r)) {
 		r->offset_mm[INTERP_U] = r->offset_mm[INTERP_X];
@@ -47,11 +55,14 @@ void nc_set_offset(struct nc_reader *r)
 
 int nc_set_turn(struct nc_reader *r)
 {
-	const double deg = r->turn_deg[r->work];
+	const struct interp_turn figure = nc_figure_turn(&r->figure);
+	const double deg = figure.deg == 0 ? r->turn_deg[r->work] :
+			   remainder(r->turn_deg[r->work] + figure.deg, 360);
 	const uint8_t *at = r->line_at;
 	int err;
 
-	if (deg == r->contour.guides.turn.deg) {
+	if (deg == r->contour.guides.turn.deg &&
+	    figure.mirrored == r->contour.guides.turn.mirrored) {
 		nc_set_offset(r);
 		return 0;
 	}
@@ -68,7 +79,7 @@ int nc_set_turn(struct nc_reader *r)
 				 "probing motion along X or Y", deg);
 	/* The direction in which a G5 left was that of the other system. */
 	r->curve.smooth = false;
-	err = contour_turn(&r->contour, deg, r->diag);
+	err = contour_turn(&r->contour, deg, figure.mirrored, r->diag);
 	nc_set_offset(r);
 	return err;
 }
@@ -175,6 +186,11 @@ static int run_pump(struct nc_reader *r)
 			 r->block.code_at[NC_PUMP]);
 }
 
+static int run_wire_stop(struct nc_reader *r)
+{
+	return nc_action(r, INTERP_STOP, 0, r->block.code_at[NC_WIRE_STOP]);
+}
+
 int nc_machine_place(struct nc_reader *r, const uint8_t *at)
 {
 	if (r->tool.on)
@@ -220,6 +236,9 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_OFFSET]		= nc_run_offset,
 	[NC_TAPER]		= nc_run_taper,
 	[NC_TAPER_CORNER]	= nc_run_taper_corner,
+	[NC_MIRROR]		= nc_run_mirror,
+	[NC_SCALE]		= nc_run_scale,
+	[NC_TURN]		= nc_run_turn,
 	[NC_MCODE]		= run_mcode,
 	[NC_POWER]		= run_power,
 	[NC_PUMP]		= run_pump,
@@ -231,6 +250,7 @@ static int (*const run[NC_NGROUPS])(struct nc_reader *) = {
 	[NC_ONE_SHOT]		= nc_run_one_shot,
 	[NC_MOTION]		= nc_run_motion,
 	[NC_MCODE_AFTER]	= run_mcode_after,
+	[NC_WIRE_STOP]		= run_wire_stop,
 	[NC_STOP]		= nc_run_stop,
 };
 
@@ -251,7 +271,7 @@ static const struct stray {
 	const char *what, *wanted;
 } strays[] = {
 	{ NC_P, NC_MOTION, 2, 3, "turns of an arc, in LinuxCNC",
-	  "an arc without P, once for each turn" },
+	  "an arc without P, once for each turn, or dialect linuxcnc" },
 	{ NC_UJ, NC_STOP, NC_CALL, NC_CALL,
 	  "in this dialect the centre of the top's arc, not how often",
 	  "M98 P21000 for two times O1000, or G65 P1000 L2" },
@@ -345,6 +365,30 @@ static bool in_body(const struct nc_reader *r)
 			    r->curve.open == NC_BODY;
 }
 
+/* The word of the line by which a figure is turned, mirrored or scaled, and to
+ * which its other words belong; NC_NGROUPS: there is none. */
+static enum nc_group figure_word(const struct nc_reader *r)
+{
+	const struct nc_block *b = &r->block;
+
+	for (enum nc_group g = NC_MIRROR; g <= NC_TURN; g++)
+		if (nc_has_group(r, g) && b->words & b->code[g]->takes)
+			return g;
+	return NC_NGROUPS;
+}
+
+static int check_figure_alone(struct nc_reader *r, enum nc_group figure)
+{
+	const struct nc_block *b = &r->block;
+	const uint32_t moves = NC_BIT(NC_MOTION) | NC_BIT(NC_MACHINE);
+
+	if (!(b->groups & moves))
+		return 0;
+	return nc_refuse(r, b->code_at[figure], "a line of its own",
+			 "%s with its words on a line with a motion word",
+			 nc_quote_word(r, b->code_at[figure]).s);
+}
+
 static int complete(struct nc_reader *r)
 {
 	struct nc_block *b = &r->block;
@@ -365,6 +409,8 @@ static int complete(struct nc_reader *r)
 				nc_quote_word(r, b->code_at[NC_ONE_SHOT]).s);
 		return 0;
 	}
+	if (figure_word(r) != NC_NGROUPS)
+		return check_figure_alone(r, figure_word(r));
 	if (b->words & moves && !nc_has_group(r, NC_MOTION))
 		return add_motion(r);
 	return 0;
@@ -405,6 +451,11 @@ int nc_run_line(struct nc_reader *r)
 		return err;
 	if (b->toward | r->loose) {
 		err = nc_check_probed(r);
+		if (err)
+			return err;
+	}
+	if (r->figure.vague || nc_figure_is_on(&r->figure)) {
+		err = nc_check_figure(r);
 		if (err)
 			return err;
 	}

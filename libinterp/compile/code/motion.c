@@ -113,6 +113,8 @@ static inline int word(struct nc_reader *r, bool turns, bool rapid)
 {
 	r->word.line = r->line;
 	r->word.rapid = rapid;
+	if (r->unplaced && nc_place_electrode(r, rapid))
+		return -EINVAL;
 	if (rapid)
 		return 0;
 	r->word.feed_mm_s = turns ? r->feed_deg_s : r->feed_mm_s;
@@ -234,6 +236,39 @@ int nc_line_to(struct nc_reader *r, const double end_mm[INTERP_NAXES],
 	return line_to(r, end_mm, rapid);
 }
 
+/* ,R and ,C; R of a line. */
+static int end_corner(struct nc_reader *r, const struct nc_code *motion)
+{
+	const struct nc_block *b = &r->block;
+	const uint32_t xy = NC_BIT(NC_X) | NC_BIT(NC_Y);
+	const uint32_t line = motion->value == 1 ? NC_BIT(NC_R) : 0;
+	const uint32_t is = b->words & (NC_CORNER | line);
+	const int slot = is ? __builtin_ctz(is) : 0;
+	struct nc_quote word;
+
+	if (!is)
+		return 0;
+	word = nc_quote_word(r, b->at[slot]);
+	if (is & (is - 1))
+		return nc_refuse(r, b->at[slot], "one of ,R ,C",
+				 "two words for one corner");
+	if (!(b->words & xy))
+		return nc_refuse(r, b->at[slot], "X or Y beside it",
+				 "%s, a corner, without a motion in X Y",
+				 word.s);
+	if (r->plane != 0 || r->tool.on || motion->value == 0)
+		return nc_refuse(r, b->at[slot], "G17 and G1 G2 or G3, without "
+				 "G43.4", "%s, a corner", word.s);
+	if (!(b->value[slot] >= 0))
+		return nc_refuse(r, b->at[slot], "a size above 0",
+				 "%s, a corner below 0", word.s);
+	contour_corner(&r->contour, (struct contour_corner) {
+		.mm = b->value[slot] * r->scale[INTERP_X],
+		.cut = slot == NC_COMMA_C,
+	});
+	return 0;
+}
+
 int nc_run_motion(struct nc_reader *r)
 {
 	const struct nc_code *motion = r->block.code[NC_MOTION];
@@ -243,6 +278,9 @@ int nc_run_motion(struct nc_reader *r)
 	if (motion->value >= NC_SPLINE)
 		return nc_curve(r);
 	r->curve.smooth = false;
+	if (r->block.words & (NC_CORNER | NC_BIT(NC_R)) &&
+	    end_corner(r, motion))
+		return -EINVAL;
 	if (!(r->block.words & NC_MOVES))
 		return 0;
 	if (motion->value >= 2)
@@ -349,6 +387,7 @@ static int set_here(struct nc_reader *r)
 				 r->origin_mm[i];
 	nc_set_offset(r);
 	r->unnamed &= ~b->words;
+	r->unplaced &= ~b->words;
 	r->local &= ~b->words;
 	return 0;
 }

@@ -62,6 +62,7 @@ static void reset_modes(struct nc_reader *r)
 
 	memcpy(r->work_mm, o->work_offset_mm, sizeof(r->work_mm));
 	memcpy(r->turn_deg, o->work_turn_deg, sizeof(r->turn_deg));
+	r->figure.scale = 1;
 	r->arc_incremental = !r->d->arc_places;
 	r->lengths = r->d->point != NC_POINT_FREE ||
 		     (o->notes && o->notes->plan) ? NC_LENGTHS : 0;
@@ -76,7 +77,7 @@ static void reset_modes(struct nc_reader *r)
 					    INTERP_NC_EXECUTED_MAX;
 	r->escape = o->escape;
 	nc_set_lift(r);
-	nc_set_units(r, false);
+	nc_set_units(r, r->d->inches);
 	nc_set_offset(r);
 }
 
@@ -166,7 +167,11 @@ int interp_nc_compile(const struct interp_text *text,
 	if (!err)
 		err = nc_electrode_begin(&r);
 	if (!err)
+		err = nc_setting_begin(&r);
+	if (!err)
 		err = read_lines(&r);
+	if (!err)
+		err = nc_setting_end(&r);
 	if (!err) {
 		ret->lines = count_lines(&r);
 		ret->executed = r.executed;

@@ -47,18 +47,18 @@ static bool told(struct nc_reader *r, enum nc_told kind)
 
 void nc_note_point(struct nc_reader *r, const uint8_t *at)
 {
-	const bool inches = r->unit_mm > 1;
+	const struct nc_quote word = nc_quote_word(r, at);
 
 	if (!r->o->notes || !r->o->notes->plan || told(r, NC_TOLD_POINT))
 		return;
 	if (r->d->point == NC_POINT_LAST)
-		say(r, "%s has no decimal point: it counts %s here, and %s on "
-		    "many other controls", nc_quote_word(r, at).s,
-		    inches ? "0.0001 inches" : "um", inches ? "inches" : "mm");
+		say(r, "%s has no decimal point: its last digit counts %s "
+		    "here, and 1 on many other controls", word.s,
+		    r->unit_mm > 1 ? "0.0001" : "0.001");
 	else
-		say(r, "%s has no decimal point: it is read as %s here, and "
+		say(r, "%s has no decimal point: it is read as %s.0 here, and "
 		    "counts the last decimal on many controls of EDM machines",
-		    nc_quote_word(r, at).s, inches ? "inches" : "mm");
+		    word.s, word.s);
 }
 
 void nc_note_skipped(struct nc_reader *r)

@@ -55,11 +55,13 @@ static int refuse_register(struct nc_reader *r, const uint8_t *at)
 static int set_side(struct nc_reader *r, const uint8_t *at)
 {
 	const struct nc_register *g = &r->registers[r->selected];
+	const double set = r->offset_side ? r->set_slope : 0;
 
 	if (r->offset_side && !g->known)
 		return refuse_register(r, at);
 	contour_side(&r->contour, r->offset_side * g->mm,
-		     r->taper_side * r->slope);
+		     set + r->taper_side * r->slope);
+	r->set_used |= set != 0;
 	r->word.origin = nc_origin(r, 0, r->contour.offset_mm);
 	return 0;
 }
@@ -111,6 +113,10 @@ int nc_run_taper(struct nc_reader *r)
 {
 	if (r->tool.on && r->block.code[NC_TAPER]->value)
 		return refuse_tip(r, NC_TAPER);
+	if (r->set_slope != 0 && r->block.code[NC_TAPER]->value)
+		return nc_refuse(r, r->block.code_at[NC_TAPER], "one of them",
+				 "a taper of the program beside the one that "
+				 "is set for it");
 	r->taper_side = side_of(r->block.code[NC_TAPER]);
 	return set_side(r, r->block.code_at[NC_TAPER]);
 }
@@ -120,6 +126,30 @@ int nc_run_taper_corner(struct nc_reader *r)
 	r->contour.corner = (enum interp_taper_corner)
 			    r->block.code[NC_TAPER_CORNER]->value;
 	return 0;
+}
+
+/* NC code has words for the rest. */
+int nc_setting_begin(struct nc_reader *r)
+{
+	const struct interp_setting *s = &r->o->set;
+
+	if (s->wire_mm != 0 || s->turn_deg != 0 || s->mirror ||
+	    (s->scale != 0 && s->scale != 1))
+		return interp_diag_say(r->diag, "an offset, a scale, a turn or "
+				       "an image set for NC code; its words, or "
+				       "3B and 4B");
+	return contour_set_taper(&r->contour, s->taper_deg, &r->set_slope,
+				 r->diag);
+}
+
+int nc_setting_end(struct nc_reader *r)
+{
+	if (r->set_slope == 0 || r->set_used)
+		return 0;
+	r->diag->line = r->diag->column = 0;
+	return interp_diag_say(r->diag, "a taper set for a program that has no "
+			       "wire offset; G41 or G42 where its contour "
+			       "begins, with a register of 0 if need be");
 }
 
 static int refuse_angle(struct nc_reader *r, const uint8_t *at, double deg)

@@ -51,12 +51,6 @@ static bool is_no_place(const struct nc_reader *r)
 	       (c->value == NC_DWELL || c->value == NC_SET);
 }
 
-static bool by_distance(const struct nc_reader *r)
-{
-	return nc_has_group(r, NC_DISTANCE) ?
-	       r->block.code[NC_DISTANCE]->value : r->incremental;
-}
-
 int nc_check_probed(struct nc_reader *r)
 {
 	const struct nc_block *b = &r->block;
@@ -79,7 +73,7 @@ int nc_check_probed(struct nc_reader *r)
 	if (nc_has_group(r, NC_TOOL_POINT) && r->loose &&
 	    b->code[NC_TOOL_POINT]->value)
 		return refuse_machine(r, NC_TOOL_POINT);
-	if (is_no_place(r) || by_distance(r) || !(named & r->unnamed))
+	if (is_no_place(r) || nc_by_distance(r) || !(named & r->unnamed))
 		return 0;
 	return refuse_unnamed(r, named & r->unnamed);
 }
@@ -410,7 +404,7 @@ int nc_run_probe(struct nc_reader *r)
 
 	if (r->tool.on || nc_has_guides(r) || r->offset_side || r->taper_side)
 		return refuse_mode(r);
-	if (r->contour.guides.turn.deg != 0)
+	if (interp_turn_is_on(&r->contour.guides.turn))
 		return nc_refuse(r, word_at(r), "a work system that is not "
 				 "turned before it, as G55", "%s where the work "
 				 "is turned by %g degrees: it feels along one "

@@ -7,6 +7,7 @@
  *	modal.c		carry a block out, group by group
  *	mcode.c		M codes of the machine
  *	electrode.c	T words: which electrode cuts
+ *	figure.c	figures that are turned, mirrored, scaled: G68 G51.1
  *	motion.c	lines, machine zero, dwell, offsets: what axis words do
  *	arc.c		G2 and G3
  *	cycles.c	G130 ... G135, and the way out: G140 ... G143
@@ -200,6 +201,25 @@ struct nc_curve {
 	double leave_mm[2];		/* ... and its last handle, mirrored */
 };
 
+/* A figure that is turned, mirrored and scaled. */
+struct nc_figure {
+	double turn_deg, about_mm[2];	/* a place of the work system */
+	uint32_t mirrored;		/* bits of X and Y */
+	double mirror_mm[2];		/* where the mirror stands, as the
+					 * program says it */
+	bool exchanged;			/* X and Y */
+	double scale, scale_mm[3];	/* 1: none; as the program says it */
+	bool vague;			/* since it changed, no line has named
+					 * both X and Y */
+};
+
+/* Of P in G51. */
+#define NC_SCALE_LEAST	0.001
+#define NC_SCALE_MOST	1000
+
+/* Two places that a program can tell apart. */
+#define NC_SEEN_MM	1e-6
+
 struct nc_reader {
 	const struct nc_dialect *d;
 	struct interp_diag first;	/* the refusal that ended the reading */
@@ -234,7 +254,9 @@ struct nc_reader {
 	uint32_t lengths;		/* slots where a decimal point
 					 * matters */
 	double unit_mm;			/* 1 or 25.4 */
-	double scale[INTERP_NAXES];	/* unit_mm; 1 for rotary axes */
+	double scale[INTERP_NAXES];	/* unit_mm by the scale of the figure; 1
+					 * for rotary axes */
+	struct nc_figure figure;
 	double shift_mm[INTERP_NAXES];	/* by G92 or G52 */
 	uint32_t local;			/* axes that G52 has shifted */
 	double offset_mm[INTERP_NAXES];	/* work offset, electrode and shift
@@ -254,6 +276,9 @@ struct nc_reader {
 	struct contour contour;
 	int offset_side, taper_side;	/* +1 left, -1 right, 0 off */
 	double slope;			/* tangent of the taper */
+	double set_slope;		/* + left, of one that is set for the
+					 * job: it holds under an offset */
+	bool set_used;
 
 	struct nc_passes passes;
 	enum interp_escape_mode escape;
@@ -264,6 +289,8 @@ struct nc_reader {
 	uint32_t next;			/* named by a T word, for the change */
 	double electrode_by[INTERP_NAXES];	/* what it shifts the axes by:
 					 * whole pulses; X Y at C 0 */
+	uint32_t unplaced;		/* axes that it shifts otherwise than
+					 * the one before, not named since */
 	uint32_t nchanges;
 
 	/* Probing. */
@@ -318,6 +345,13 @@ static inline bool nc_has(const struct nc_reader *r, enum nc_slot slot)
 static inline bool nc_has_group(const struct nc_reader *r, enum nc_group group)
 {
 	return r->block.groups & NC_BIT(group);
+}
+
+/** nc_by_distance() - are the words of this block distances, as under G91? */
+static inline bool nc_by_distance(const struct nc_reader *r)
+{
+	return nc_has_group(r, NC_DISTANCE) ?
+	       r->block.code[NC_DISTANCE]->value : r->incremental;
 }
 
 /* a toward b is counter-clockwise.  ca and cb are the words of the centre;
@@ -381,6 +415,34 @@ uint32_t nc_origin(const struct nc_reader *r, uint32_t pass, double wire_mm);
 /** nc_set_turn() - another work system is in force, or is turned otherwise. */
 int nc_set_turn(struct nc_reader *r);
 
+/** nc_work_origin() - of the work system in force, with the electrode: a
+ *  machine place. */
+void nc_work_origin(const struct nc_reader *r, double ret_mm[INTERP_NAXES]);
+
+/** nc_figure_turn() - of the figure, within its work system. */
+struct interp_turn nc_figure_turn(const struct nc_figure *f);
+
+/** nc_figure_origin() - @mm has the place of the work system from which
+ *  programs count; it gets the one from which a figure does, turned back as the
+ *  figure is turned. */
+void nc_figure_origin(const struct nc_figure *f, double mm[INTERP_NAXES]);
+
+static inline bool nc_figure_is_on(const struct nc_figure *f)
+{
+	return f->turn_deg != 0 || f->mirrored || f->exchanged || f->scale != 1;
+}
+
+/** nc_check_figure() - may the line stand in the figure as it is?  Return: 0,
+ *  or -EINVAL. */
+int nc_check_figure(struct nc_reader *r);
+
+/** nc_decimals() - how many decimals the word at @at has. */
+int nc_decimals(const struct nc_reader *r, const uint8_t *at);
+
+/** nc_place_electrode() - the line moves axes that it names, or is a cut: one
+ *  before each axis of r->unplaced was named is refused. */
+int nc_place_electrode(struct nc_reader *r, bool rapid);
+
 /** nc_electrode_at() - what the electrode shifts the axes by, where C stands
  *  at @c_deg. */
 void nc_electrode_at(const struct nc_reader *r, double c_deg,
@@ -405,6 +467,9 @@ int nc_check_eccentric(struct nc_reader *r, const double end_mm[INTERP_NAXES]);
 /* Functions of groups, called by nc_run_line(). */
 int nc_run_motion(struct nc_reader *r);
 int nc_run_one_shot(struct nc_reader *r);
+int nc_run_mirror(struct nc_reader *r);
+int nc_run_scale(struct nc_reader *r);
+int nc_run_turn(struct nc_reader *r);
 int nc_run_stop(struct nc_reader *r);
 int nc_run_label(struct nc_reader *r);
 
@@ -462,6 +527,10 @@ int nc_check_probed(struct nc_reader *r);
 int nc_run_register(struct nc_reader *r);
 int nc_run_offset(struct nc_reader *r);
 int nc_run_taper(struct nc_reader *r);
+/** nc_setting_begin(), nc_setting_end() - what is set for the job, before and
+ *  behind its lines. */
+int nc_setting_begin(struct nc_reader *r);
+int nc_setting_end(struct nc_reader *r);
 int nc_run_taper_corner(struct nc_reader *r);
 
 /** nc_take_angle() - the A of a G51 or G52 is not an axis. */
@@ -585,7 +654,8 @@ static inline uint32_t nc_goes(const struct nc_reader *r)
 {
 	const uint32_t xy = NC_BIT(NC_X) | NC_BIT(NC_Y);
 	const uint32_t axes = r->block.words & NC_AXES;
-	uint32_t both = r->contour.guides.turn.deg != 0 ? xy : 0;
+	uint32_t both = interp_turn_is_on(&r->contour.guides.turn) ?
+			xy : 0;
 
 	if (nc_has_group(r, NC_MACHINE))
 		return axes;

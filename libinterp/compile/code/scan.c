@@ -369,6 +369,52 @@ static const uint8_t *scan_s(struct nc_reader *r, const uint8_t *at)
 	return NULL;
 }
 
+/* A length, or a register by its letter and number. */
+static const uint8_t *scan_term(struct nc_reader *r, const uint8_t *at,
+				double *v)
+{
+	const uint8_t *first = at < r->stop ? nc_skip_blanks(at + 1, r->stop) :
+					      at;
+	const uint8_t *p;
+	uint64_t n = 0;
+
+	if (at == r->stop || r->d->classes[*at] != NC_LETTER_D) {
+		p = nc_number(at, r->stop, v);
+		if (p)
+			return pointed_length(r, at, p, v) ? p : NULL;
+		nc_refuse(r, at, "a number or a register behind the =, as in "
+			  "H001=0.11 or H1=0.01+H175",
+			  "a definition without a number");
+		return NULL;
+	}
+	p = nc_digits(first, r->stop, &n);
+	if (p == first || n >= NC_NREGISTERS || !r->registers[n].known) {
+		nc_refuse(r, at, "a register that has a value",
+			  "%s, which has none", nc_quote_word(r, at).s);
+		return NULL;
+	}
+	*v = r->registers[n].mm / r->unit_mm;
+	return p;
+}
+
+static const uint8_t *scan_sum(struct nc_reader *r, const uint8_t *p,
+			       double *ret)
+{
+	double sign = 1, v;
+
+	*ret = 0;
+	for (;;) {
+		p = scan_term(r, nc_skip_blanks(p, r->stop), &v);
+		if (!p)
+			return NULL;
+		*ret += sign * v;
+		p = nc_skip_blanks(p, r->stop);
+		if (p == r->stop || (*p != '+' && *p != '-'))
+			return p;
+		sign = *p++ == '-' ? -1 : 1;
+	}
+}
+
 /* H1 selects an offset register; H1=0.11 defines it. */
 static const uint8_t *scan_register(struct nc_reader *r, const uint8_t *at)
 {
@@ -383,16 +429,9 @@ static const uint8_t *scan_register(struct nc_reader *r, const uint8_t *at)
 		return scan_value(r, at, slot);
 	if (p == first || p - first > 9 || n >= NC_NREGISTERS)
 		return refuse_range(r, at, &nc_words[slot]);
-	p = nc_number(value, r->stop, &v);
-	if (!p) {
-		nc_refuse(r, at, "a number behind the =, as in H001=0.11",
-			  "a definition without a number");
-		return NULL;
-	}
 	r->word_at = at;
-	if (!pointed_length(r, value, p, &v))
-		return NULL;
-	return nc_define_register(r, at, (uint32_t)n, v) ? NULL : p;
+	p = scan_sum(r, value, &v);
+	return !p || nc_define_register(r, at, (uint32_t)n, v) ? NULL : p;
 }
 
 static const uint8_t *scan_upper(struct nc_reader *r, const uint8_t *at)
@@ -400,6 +439,32 @@ static const uint8_t *scan_upper(struct nc_reader *r, const uint8_t *at)
 	if (nc_has_guides(r))
 		return scan_value(r, at, (*at | 0x20) == 'u' ? NC_U : NC_V);
 	nc_refuse_wire(r, at);
+	return NULL;
+}
+
+static const uint8_t *scan_turn(struct nc_reader *r, const uint8_t *at)
+{
+	static const char second[] = "AIJ";
+	static const uint8_t slot[] = { NC_R, NC_I, NC_J };
+	const uint8_t *p = nc_skip_blanks(at + 1, r->stop);
+	const char *is = p < r->stop && isalpha(*p) ?
+			 strchr(second, toupper(*p)) : NULL;
+
+	return is ? scan_value(r, p, slot[is - second]) :
+		    scan_value(r, at, NC_R);
+}
+
+static const uint8_t *scan_comma(struct nc_reader *r, const uint8_t *at)
+{
+	const uint8_t *p = nc_skip_blanks(at + 1, r->stop);
+	const int letter = p < r->stop ? toupper(*p) : 0;
+
+	if (letter == 'R' || letter == 'C')
+		return scan_value(r, p, letter == 'R' ? NC_COMMA_R :
+							NC_COMMA_C);
+	nc_refuse(r, at, ",R with the radius of a corner, or ,C with how far "
+		  "it is cut", "%s, a comma in front of something else",
+		  nc_quote_run(r, at).s);
 	return NULL;
 }
 
@@ -579,6 +644,8 @@ static scan_fn *const scan_other[NC_NCLASSES] = {
 	[NC_LETTER_S]	= scan_s,
 	[NC_LETTER_D]	= scan_register,
 	[NC_LETTER_U]	= scan_upper,
+	[NC_LETTER_R]	= scan_turn,
+	[NC_COMMA]	= scan_comma,
 	[NC_NUMERIC]	= scan_stray,
 	[NC_OPEN]	= scan_comment,
 	[NC_SEMICOLON]	= scan_to_end,

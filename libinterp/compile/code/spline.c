@@ -100,8 +100,8 @@ static int handle(struct nc_reader *r, double ret_mm[2])
 	const struct nc_block *b = &r->block;
 
 	if (nc_has(r, NC_I) && nc_has(r, NC_J)) {
-		ret_mm[0] = b->value[NC_I] * r->unit_mm;
-		ret_mm[1] = b->value[NC_J] * r->unit_mm;
+		ret_mm[0] = b->value[NC_I] * r->scale[INTERP_X];
+		ret_mm[1] = b->value[NC_J] * r->scale[INTERP_X];
 		return 0;
 	}
 	if (nc_has(r, NC_I) || nc_has(r, NC_J) || !r->curve.smooth)
@@ -131,7 +131,8 @@ int nc_curve_spline(struct nc_reader *r)
 		return err;
 	nc_target(r, end_mm);
 	for (int i = 0; i < 2; i++) {
-		const double back_mm = b->value[i ? NC_Q : NC_P] * r->unit_mm;
+		const double back_mm = b->value[i ? NC_Q : NC_P] *
+				       r->scale[INTERP_X];
 
 		p[i] += here[i];
 		p[2 + i] = end_mm[i] + back_mm;
@@ -158,7 +159,8 @@ int nc_curve_parabola(struct nc_reader *r)
 		const enum nc_slot slot = i ? NC_J : NC_I;
 
 		p[i] = here[i] +
-		       (nc_has(r, slot) ? b->value[slot] * r->unit_mm : 0);
+		       (nc_has(r, slot) ?
+			b->value[slot] * r->scale[INTERP_X] : 0);
 		p[2 + i] = end_mm[i];
 	}
 	return bezier(r, p, 2);

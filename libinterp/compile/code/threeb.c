@@ -14,6 +14,7 @@
  */
 #include "code/threeb_reader.h"
 #include "interp/nc.h"
+#include "wire/contour.h"
 
 #include <errno.h>
 #include <math.h>
@@ -24,12 +25,15 @@
 struct threeb_reader {
 	struct threeb_text text;
 	const struct interp_threeb_read *o;
-	struct interp_build *build;
+	struct contour contour;
 	struct interp_build_word word;
 	double start_mm[INTERP_NAXES];
 	double unit_mm, offset;		/* mm in a unit; units */
 	double x, y;			/* units */
 	uint32_t records, segs_max;
+	double slope;			/* of the taper that is set */
+	uint32_t motions, done;		/* in all; 0: not counted, for nothing
+					 * is set beside the contour */
 };
 
 static int refuse_end(struct threeb_reader *r, const struct threeb_record *c,
@@ -46,13 +50,18 @@ static void place_mm(const struct threeb_reader *r, double x, double y,
 		ret_mm[i] = r->start_mm[i];
 	ret_mm[INTERP_X] += x * r->unit_mm;
 	ret_mm[INTERP_Y] += y * r->unit_mm;
+	ret_mm[INTERP_U] += guides_on(&r->contour.guides) ? x * r->unit_mm : 0;
+	ret_mm[INTERP_V] += guides_on(&r->contour.guides) ? y * r->unit_mm : 0;
 }
 
-/* What the builder said, with the place of the record. */
+/* What the builder said, with the place of the record; a contour may blame
+ * another line. */
 static int placed(struct threeb_reader *r, const struct threeb_record *c,
 		  int rc)
 {
-	if (rc == -EINVAL) {
+	const uint32_t line = r->text.diag->line;
+
+	if (rc == -EINVAL && (line == 0 || line == r->text.line)) {
 		r->text.diag->line = r->text.line;
 		r->text.diag->column =
 			(uint32_t)(c->at - r->text.line_at) + 1;
@@ -107,7 +116,7 @@ static int line(struct threeb_reader *r, const struct threeb_record *c)
 	r->x += sx * (double)(c->count_y ? other : counted);
 	r->y += sy * (double)(c->count_y ? counted : other);
 	place_mm(r, r->x, r->y, end_mm);
-	err = interp_build_line(r->build, end_mm, &r->word, r->text.diag);
+	err = contour_line(&r->contour, end_mm, &r->word, r->text.diag);
 	return placed(r, c, err);
 }
 
@@ -164,7 +173,7 @@ static int build_arc(struct threeb_reader *r, const struct threeb_record *c,
 		r->y = cy + scale * (double)e->y;
 	}
 	place_mm(r, r->x, r->y, end_mm);
-	rc = interp_build_arc(r->build, end_mm, &arc, &r->word, r->text.diag);
+	rc = contour_arc(&r->contour, end_mm, &arc, &r->word, r->text.diag);
 	return placed(r, c, rc);
 }
 
@@ -197,6 +206,82 @@ static int arc(struct threeb_reader *r, const struct threeb_record *c)
 	return build_arc(r, c, &a, &e, scale);
 }
 
+/* -- What is set at the machine -------------------------------------------- */
+
+static bool is_beside(const struct interp_setting *set)
+{
+	return set->wire_mm != 0 || set->taper_deg != 0;
+}
+
+/* The first motion leads to the contour, and the last one away from it. */
+static void set_side(struct threeb_reader *r)
+{
+	const struct interp_setting *set = &r->text.o->set;
+	const bool on = ++r->done < r->motions;
+
+	contour_side(&r->contour, on ? set->wire_mm : 0, on ? r->slope : 0);
+}
+
+static int refuse_setting(struct interp_diag *diag, const char *wanted,
+			  const char *found)
+{
+	diag->line = diag->column = 0;
+	return interp_diag_say(diag, "%s; %s", found, wanted);
+}
+
+static int check_setting(struct threeb_reader *r)
+{
+	const struct interp_setting *set = &r->text.o->set;
+	struct interp_diag *diag = r->text.diag;
+
+	if (set->wire_mm != 0 && r->text.o->fourb)
+		return refuse_setting(diag, "fourb_offset_um for it", "an "
+				      "offset beside the contour of 4B, which "
+				      "has its own");
+	return contour_set_taper(&r->contour, set->taper_deg, &r->slope, diag);
+}
+
+/* A line of length 0 leads nowhere. */
+static bool is_motion(int what, const struct threeb_record *c)
+{
+	return (what == THREEB_LINE && c->j > 0) || what == THREEB_CCW ||
+	       what == THREEB_CW;
+}
+
+/* Which motion is the last one is known when all are read. */
+static int count_motions(struct threeb_reader *r, const struct interp_text *t)
+{
+	struct threeb_text text = r->text;
+	struct threeb_record c;
+	int what, err = threeb_open(&text, t->bytes ? t->at : "", t->bytes);
+
+	while (!err && (what = threeb_next(&text, &c)) != THREEB_OVER) {
+		if (what < 0)
+			return what;
+		r->motions += is_motion(what, &c);
+	}
+	if (!err && r->motions < 3)
+		return refuse_setting(r->text.diag, "a motion to the contour, "
+				      "one along it and one away from it",
+				      "an offset or a taper, and fewer than "
+				      "three motions");
+	return err;
+}
+
+static int place_figure(struct threeb_reader *r)
+{
+	const struct interp_setting *set = &r->text.o->set;
+	const struct interp_turn turn =
+		interp_turn_image(set->turn_deg, set->mirror == INTERP_MIRROR_X,
+				  set->mirror == INTERP_MIRROR_Y,
+				  set->mirror == INTERP_MIRROR_EXCHANGE);
+
+	if (set->scale > 0)
+		r->unit_mm *= set->scale;
+	return contour_turn(&r->contour, turn.deg, turn.mirrored,
+			    r->text.diag);
+}
+
 /* -- The program ----------------------------------------------------------- */
 
 static int run(struct threeb_reader *r, int what,
@@ -207,15 +292,17 @@ static int run(struct threeb_reader *r, int what,
 	if (r->records > r->segs_max)
 		return threeb_refuse(&r->text, c->at, "fewer records",
 				     "more than %u records", r->segs_max);
+	if (is_motion(what, c))
+		set_side(r);
 	switch (what) {
 	case THREEB_LINE:
 		return line(r, c);
 	case THREEB_PAUSE:
-		return interp_build_action(r->build, INTERP_STOP, 0, &r->word,
-					   r->text.diag);
+		return contour_action(&r->contour, INTERP_STOP, 0, &r->word,
+				      r->text.diag);
 	case THREEB_END:
-		return interp_build_action(r->build, INTERP_END, 0, &r->word,
-					   r->text.diag);
+		return contour_action(&r->contour, INTERP_END, 0, &r->word,
+				      r->text.diag);
 	default:
 		return arc(r, c);
 	}
@@ -252,14 +339,27 @@ static void set_up(struct threeb_reader *r)
 {
 	const struct interp_threeb_options *o = r->o->options;
 	const double unit_um = o->unit_um > 0 ? o->unit_um : 1;
-	const double *here = interp_build_here(r->build);
 
 	r->unit_mm = unit_um / 1000;
 	r->offset = o->offset_um / unit_um;
 	r->word.feed_mm_s = feed_of(r->o);
 	r->segs_max = r->o->segs_max ? r->o->segs_max : INTERP_NC_SEGS_MAX;
+}
+
+static int compile(struct threeb_reader *r, const struct interp_text *text)
+{
+	int err = check_setting(r);
+
+	if (!err)
+		err = place_figure(r);
 	for (int i = 0; i < INTERP_NAXES; i++)
-		r->start_mm[i] = here[i];
+		r->start_mm[i] = r->contour.here_mm[i];
+	if (!err && is_beside(&r->text.o->set))
+		err = count_motions(r, text);
+	if (!err)
+		err = threeb_open(&r->text, text->bytes ? text->at : "",
+				  text->bytes);
+	return err ? err : read_records(r);
 }
 
 int interp_threeb_compile(const struct interp_text *text,
@@ -268,15 +368,18 @@ int interp_threeb_compile(const struct interp_text *text,
 			  struct interp_threeb_result *ret,
 			  struct interp_diag *diag)
 {
+	static const struct interp_wire none = { .corner_angle_deg = 180 };
 	struct threeb_reader r = {
-		.text = { .o = o->options, .diag = diag }, .o = o, .build = b,
+		.text = { .o = o->options, .diag = diag }, .o = o,
 	};
 	int err;
 
 	set_up(&r);
-	err = threeb_open(&r.text, text->bytes ? text->at : "", text->bytes);
+	contour_init(&r.contour, o->wire ? o->wire : &none, o->machine, b);
+	err = compile(&r, text);
 	if (!err)
-		err = read_records(&r);
+		err = contour_flush(&r.contour, diag);
+	contour_free(&r.contour);
 	if (!err && r.records == 0) {
 		err = threeb_refuse(&r.text, r.text.line_at, "at least one "
 				   "record", "empty program");

@@ -8,8 +8,6 @@
  * the place of the tip is computed.
  */
 #include "code/tip_way.h"
-#include "interp/limits.h"
-#include "path/builder.h"
 
 #include <math.h>
 #include <string.h>
@@ -202,149 +200,6 @@ static int cut_piece(struct nc_reader *r, const struct nc_tip_way *w,
 	return 0;
 }
 
-/* The axes are looked at over so many parts of the way, to see how they bend:
- * each is half a piece, from one piece before it to one behind it. */
-#define PARTS		6
-
-/* A piece is straight, whatever bends in so small a part of it. */
-#define PART_LEAST	8
-
-struct part {
-	double mm;			/* of path; 0: the way has ended */
-	bool linear;			/* mm of X Y Z, not degrees */
-	double rate[INTERP_NAXES];	/* of each axis, in a mm */
-};
-
-/* As the path counts it. */
-static struct part part_of(const double *a, const double *b)
-{
-	const double xyz = span(a, b, INTERP_X, 3);
-	const double abc = span(a, b, INTERP_A, 3);
-	const bool linear = build_counts(xyz * xyz, abc * abc);
-	struct part ret = { .mm = linear ? xyz : abc, .linear = linear };
-
-	for (int i = 0; i < INTERP_NAXES && ret.mm > 0; i++)
-		ret.rate[i] = (b[i] - a[i]) / ret.mm;
-	return ret;
-}
-
-/* Do these @n parts of the way have the same units, and is none of them tiny
- * beside the piece? */
-static bool go_on(const struct part *k, int n, double least_mm)
-{
-	for (int i = 0; i < n; i++)
-		if (!(k[i].mm > least_mm) || k[i].linear != k[0].linear)
-			return false;
-	return true;
-}
-
-/* Between a part and the next one the rate of an axis changes in a mm by: */
-static double bend_of(const struct part *k, int axis)
-{
-	return (k[1].rate[axis] - k[0].rate[axis]) * 2 / (k[0].mm + k[1].mm);
-}
-
-/* How much of the path an axis takes there, whichever way it goes: where it
- * turns back, the mean of both sides would say that it stands. */
-static double rate_of(const struct part *k, int axis)
-{
-	return (fabs(k[0].rate[axis]) + fabs(k[1].rate[axis])) / 2;
-}
-
-/* The acceleration and jerk along the path that all axes can follow there, if
- * nothing bends. */
-struct own {
-	double a_mm_s2, j_mm_s3;
-};
-
-static struct own own_of(const struct interp_machine *m, const struct part *k)
-{
-	struct own own = { INFINITY, INFINITY };
-
-	for (int i = 0; i < INTERP_NAXES; i++) {
-		const double rate = rate_of(k, i);
-
-		own.a_mm_s2 = fmin(own.a_mm_s2, m->axis[i].a_max_mm_s2 / rate);
-		own.j_mm_s3 = fmin(own.j_mm_s3, m->axis[i].j_max_mm_s3 / rate);
-	}
-	return own;
-}
-
-/* The speed at which an axis beside the path can follow its bend, and speed up
- * on it. */
-static double follows_mm_s(const struct interp_axis_limits *l,
-			   const struct part *k, int axis,
-			   const struct own *own)
-{
-	const double bend = fabs(bend_of(k, axis));
-	const double along = rate_of(k, axis) * own->a_mm_s2 *
-			     INTERP_LEAST_ALONG;
-	const double jerk = INTERP_ARC_JERK_BOTH * l->j_max_mm_s3;
-	const double on = jerk / (3 * bend * INTERP_LEAST_ALONG);
-
-	return fmin(sqrt((l->a_max_mm_s2 - along) / bend),
-		    fmax(on / own->a_mm_s2, cbrt(on * on / own->j_mm_s3)));
-}
-
-static double bend_mm_s(const struct interp_machine *m, const struct part *k,
-			double least_mm)
-{
-	const struct own own = own_of(m, k);
-	double v = INFINITY;
-
-	if (!go_on(k, 2, least_mm))
-		return INFINITY;
-	for (int i = INTERP_A; i < INTERP_NAXES; i++)
-		v = fmin(v, follows_mm_s(&m->axis[i], k, i, &own));
-	return v;
-}
-
-/* The same by how their bend changes over three parts. */
-static double change_mm_s(const struct interp_machine *m, const struct part *k,
-			  double least_mm)
-{
-	double v = INFINITY;
-
-	if (!go_on(k, 3, least_mm))
-		return INFINITY;
-	for (int i = INTERP_A; i < INTERP_NAXES; i++) {
-		const double change = fabs(bend_of(k + 1, i) - bend_of(k, i)) /
-				      k[1].mm;
-
-		v = fmin(v, cbrt(INTERP_BESIDE_JERK_ROUND *
-				 m->axis[i].j_max_mm_s3 / change));
-	}
-	return v;
-}
-
-/* The time that a piece takes at least.  Here the way is known, while limits
- * that are found of lines afterwards cannot tell the bends of very short ones
- * from roundings. */
-static int least_s(const struct nc_reader *r, const struct nc_tip_way *w,
-		   const struct piece *p, double *ret)
-{
-	const struct interp_machine *m = r->o->machine;
-	const double half = (p->t1 - p->t0) / 2;
-	const double mm = part_of(p->q0, p->q1).mm;
-	double at[2][INTERP_NAXES], v = INFINITY;
-	struct part k[PARTS];
-
-	for (int n = 0; n <= PARTS; n++) {
-		const double t = p->t0 + (n - 2) * half;
-
-		if (axes_at(r, w, fmax(0, fmin(1, t)), at[n % 2]))
-			return -EDOM;
-		if (n > 0)
-			k[n - 1] = part_of(at[(n - 1) % 2], at[n % 2]);
-	}
-	for (int n = 0; n + 1 < PARTS; n++)
-		v = fmin(v, bend_mm_s(m, k + n, mm / PART_LEAST));
-	for (int n = 0; n + 2 < PARTS; n++)
-		v = fmin(v, change_mm_s(m, k + n, mm / PART_LEAST));
-	*ret = mm / v;
-	return 0;
-}
-
 static int emit_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		      const struct extent *whole, const struct piece *p)
 {
@@ -361,10 +216,7 @@ static int emit_piece(struct nc_reader *r, const struct nc_tip_way *w,
 		if (s > 0 && fed > 0)
 			r->word.feed_mm_s = fed / s;
 	}
-	if (least_s(r, w, p, &r->word.least_s))
-		return refuse_place(r);
 	err = contour_line(&r->contour, p->q1, &r->word, r->diag);
-	r->word.least_s = 0;
 	return nc_placed(r, err, p->q1);
 }
 

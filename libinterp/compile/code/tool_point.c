@@ -94,7 +94,7 @@ static int switch_on(struct nc_reader *r)
 		return refuse_on(r, "G40 and G50 before it, and no guides",
 				 "places of the tip with a wire's offset or "
 				 "taper");
-	if (r->contour.guides.turn.deg != 0)
+	if (interp_turn_is_on(&r->contour.guides.turn))
 		return refuse_on(r, "a work system that is not turned",
 				 "places of the tip in a work system that is "
 				 "turned");

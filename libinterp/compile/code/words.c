@@ -44,6 +44,10 @@ const struct nc_word nc_words[NC_NSLOTS] = {
 		   "Q goes with G130 ... G135, G160 ... G162, G5 or G6.3" },
 	[NC_NAME] = { '<', false, ANY_PLACE,
 		      "<NAME> begins a line, or goes with M98 and G65" },
+	[NC_COMMA_R] = { 'R', false, ANY_PLACE,
+			 ",R rounds the corner behind G1 G2 G3 with X or Y" },
+	[NC_COMMA_C] = { 'C', false, ANY_PLACE,
+			 ",C cuts the corner behind G1 with X or Y" },
 	[NC_SPARE] = { '?', false, ANY_PLACE, "only with a word that this "
 		       "dialect ignores" },
 };

@@ -27,6 +27,7 @@ enum nc_slot {
 	NC_Q,
 	NC_NAME,			/* <NAME> of a program; only its place
 					 * counts */
+	NC_COMMA_R, NC_COMMA_C,		/* the corner behind a motion */
 	NC_SPARE,			/* a letter that only ignored words
 					 * use */
 	NC_NSLOTS
@@ -35,10 +36,11 @@ enum nc_slot {
 #define NC_BIT(slot)	(1u << (slot))
 #define NC_AXES		(NC_BIT(NC_I) - 1)
 #define NC_CENTRE	(NC_BIT(NC_I) | NC_BIT(NC_J) | NC_BIT(NC_K))
+#define NC_CORNER	(NC_BIT(NC_COMMA_R) | NC_BIT(NC_COMMA_C))
 #define NC_MOVES	(NC_AXES | NC_CENTRE | NC_BIT(NC_R))
 #define NC_LENGTHS	(NC_BIT(NC_X) | NC_BIT(NC_Y) | NC_BIT(NC_Z) | \
 			 NC_BIT(NC_U) | NC_BIT(NC_V) | NC_BIT(NC_UI) | \
-			 NC_BIT(NC_UJ) | NC_CENTRE | NC_BIT(NC_R))
+			 NC_BIT(NC_UJ) | NC_CENTRE | NC_BIT(NC_R) | NC_CORNER)
 #define NC_ANGLES	(NC_BIT(NC_A) | NC_BIT(NC_B) | NC_BIT(NC_C) | \
 			 NC_BIT(NC_ANGLE))
 #define NC_OFFSETS	(NC_BIT(NC_D) | NC_BIT(NC_H))
@@ -71,6 +73,7 @@ enum nc_class {
 	NC_LETTER_S,			/* a condition, SC its definition */
 	NC_LETTER_D,			/* D or H: an offset register */
 	NC_LETTER_U,			/* U or V: only with a taper */
+	NC_LETTER_R,			/* R; RA RI RJ: the turn of a figure */
 	NC_NUMERIC,			/* a digit, point or sign without a
 					 * letter */
 	NC_OPEN,			/* ( comment ) */
@@ -79,6 +82,7 @@ enum nc_class {
 	NC_SLASH,
 	NC_PERCENT,
 	NC_COLON,
+	NC_COMMA,			/* ,R ,C */
 	NC_LETTER_NAME,			/* <NAME> of a program */
 	NC_LETTER_REFUSED,		/* known in other dialects: there is a
 					 * reason */
@@ -109,6 +113,9 @@ enum nc_group {
 	NC_OFFSET,			/* G40 G41 G42 */
 	NC_TAPER,			/* G50 G51 G52 */
 	NC_TAPER_CORNER,		/* G60 G61 G62 */
+	NC_MIRROR,			/* G51.1 G50.1, G5 ... G9 of Sodick */
+	NC_SCALE,			/* G51 G50 of Fanuc's mills */
+	NC_TURN,			/* G68 G69 */
 	NC_MCODE,			/* for the PLC, before the motion */
 	NC_POWER,			/* M3 M4 M5 */
 	NC_PUMP,			/* T84 T85 */
@@ -120,6 +127,8 @@ enum nc_group {
 	NC_ONE_SHOT,			/* G4 G10 G28 G92 G92.1 G120 */
 	NC_MOTION,			/* G0 ... G3, G5 ... G5.3, G6.2, G6.3 */
 	NC_MCODE_AFTER,			/* for the PLC, after the motion */
+	NC_WIRE_STOP,			/* M20 M21 M50 M60: a person threads or
+					 * cuts the wire */
 	NC_STOP,			/* M0 M1 M2 M30 M98 M99 */
 	NC_NGROUPS,
 	NC_IGNORED = NC_NGROUPS,	/* not carried out; a note says so */
@@ -169,6 +178,18 @@ enum nc_probe {
 };
 /* What a member of NC_TOOL_POINT does. */
 enum nc_tool { NC_TOOL_OFF, NC_TOOL_ANGLES, NC_TOOL_VECTOR };
+
+/* What a member of NC_MIRROR does. */
+enum nc_mirror {
+	NC_MIRROR_OFF,			/* every image, and the exchange */
+	NC_MIRROR_END,			/* that of the axes that are named */
+	NC_MIRROR_PLACES,		/* at the places that are named */
+	NC_MIRROR_X, NC_MIRROR_Y,	/* X, Y change their sign */
+	NC_MIRROR_EXCHANGE,		/* of X and Y */
+};
+
+/* What a member of NC_TURN does. */
+enum nc_turn { NC_TURN_OFF, NC_TURN_ABOUT_XY, NC_TURN_ABOUT_IJ };
 
 #define NC_M_CHANGE	6		/* M6 of a PLC changes the electrode */
 
@@ -229,6 +250,7 @@ struct nc_dialect {
 	uint8_t dwell_ms;		/* P of a dwell is in ms, not s */
 	uint8_t g91_sets;		/* G10 L2 under G91 sets an origin, it
 					 * does not move it */
+	uint8_t inches;			/* a program begins in them */
 	uint8_t macros;			/* enum nc_macros */
 	uint16_t reason[26];		/* of letters, in text */
 	struct nc_code code[NC_NCODES];	/* G, M, T */

@@ -13,7 +13,7 @@
 static void write_here(struct nc_reader *r, uint32_t work)
 {
 	const struct nc_block *b = &r->block;
-	const struct interp_turn t = interp_turn_of(r->turn_deg[work]);
+	const struct interp_turn t = interp_turn_of(r->turn_deg[work], false);
 	double at[INTERP_NAXES], by[INTERP_NAXES], *mm = r->work_mm[work];
 
 	interp_turn_to(&r->contour.guides.turn, nc_here(r), at);
@@ -71,8 +71,10 @@ int nc_write_offset(struct nc_reader *r)
 	err = nc_set_turn(r);
 	if (err)
 		return err;
-	if (l == 20 && work == r->work)
+	if (l == 20 && work == r->work) {
 		r->unnamed &= ~b->words;
+		r->unplaced &= ~b->words;
+	}
 	return 0;
 }
 

@@ -690,14 +690,6 @@ static inline int walk_together(struct interp_build *b,
 	       -ENOMEM : 0;
 }
 
-/* A part of a known way, as few lines are. */
-static void seg_known(struct interp_seg *seg, const struct interp_build_word *w)
-{
-	build_seg_feed(seg, w, smaller((double)seg->feed_max_mm_s,
-				       seg->length_mm / w->least_s));
-	seg->flags |= INTERP_SEG_KNOWN;
-}
-
 static inline struct interp_seg line_seg(const struct build_measure *m,
 					 const struct walked *walked,
 					 const struct interp_build_word *w)
@@ -708,8 +700,6 @@ static inline struct interp_seg line_seg(const struct build_measure *m,
 	};
 
 	build_seg_feed(&seg, w, m->length_mm / m->seconds);
-	if (w->least_s > 0)
-		seg_known(&seg, w);
 	if (!w->rapid)
 		seg.feed_mm_s *= (float)(m->length_mm / m->fed_mm);
 	return seg;

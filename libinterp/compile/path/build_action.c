@@ -16,8 +16,11 @@ int interp_build_action(struct interp_build *b, enum interp_kind kind,
 	struct interp_seg seg = { .kind = (uint8_t)kind, .arg = arg };
 	const int err = interp_build_flush(b, diag);
 
-	if (kind == INTERP_AUX && arg <= INTERP_AUX_POWER_NEGATIVE)
+	if (kind == INTERP_AUX && arg <= INTERP_AUX_POWER_NEGATIVE) {
 		b->off = arg == INTERP_AUX_POWER_OFF;
+		seg.arg |= b->said << 8;
+		b->said = b->off ? b->said : arg;
+	}
 	/* Millions of them would take as much memory as the program. */
 	if (err || b->again.counts)
 		return err;

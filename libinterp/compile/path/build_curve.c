@@ -25,8 +25,7 @@
 
 #define LOOKS		64		/* in a span */
 #define BESIDE_KNOT	1e-9		/* of a span */
-#define FEED_RATIO	1.1		/* fastest to slowest feed in a piece */
-#define RATIO_MOST	1.5		/* if it is too short to speed up */
+#define FEED_RATIO	1.5		/* fastest to slowest feed in a piece */
 #define CUSP_HALVINGS	60
 #define STOP_PULSES	0.02		/* error of a stop's place, of the axis
 					 * that is fastest there */
@@ -206,31 +205,22 @@ static int piece_add(struct curve_plan *p, double to)
 static void piece_begin(struct curve_plan *p, double u)
 {
 	p->from = u;
-	p->piece_mm = 0;
 	p->seen = (struct curve_seen) { .bend = 0 };
 	p->last = build_curve_look(p, u);
 	p->least_mm_s = p->most_mm_s = p->last.mm_s;
 }
 
-/* Would its feeds differ too much, if this was one?  What the axes do not come
- * to on the piece does not count. */
+/* Would its feeds differ too much, if this was one? */
 static bool differs(const struct curve_plan *p, double mm_s)
 {
-	const double least = fmin(p->least_mm_s, mm_s);
-	const double ratio = fmax(p->most_mm_s, mm_s) / least;
-
-	return ratio > RATIO_MOST ||
-	       (p->share && ratio > FEED_RATIO &&
-		2 * p->share->a * p->a_mm_s2 * p->piece_mm >
-			(FEED_RATIO * FEED_RATIO - 1) * least * least);
+	return fmax(p->most_mm_s, mm_s) >
+	       FEED_RATIO * fmin(p->least_mm_s, mm_s);
 }
 
 static void piece_take(struct curve_plan *p, const struct curve_look *here)
 {
 	p->least_mm_s = fmin(p->least_mm_s, here->mm_s);
 	p->most_mm_s = fmax(p->most_mm_s, here->mm_s);
-	p->piece_mm += (here->u - p->last.u) *
-		       (here->by_u_mm + p->last.by_u_mm) / 2;
 	p->last = *here;
 }
 
@@ -423,7 +413,5 @@ int interp_build_curve(struct interp_build *b,
 	err = build_curve_check_way(&p);
 	if (err == 0 && p.curve.counted < p.curve.naxes)
 		err = weigh(&p);
-	if (err == 0 && !p.weighed)
-		err = build_share_choose(&p);
 	return err == 0 ? along(&p) : err;
 }

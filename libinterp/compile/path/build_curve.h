@@ -31,25 +31,14 @@ struct curve_seen {
 	double d[INTERP_NAXES];		/* |x_s| of each column */
 };
 
-/* The feed that the axes allow at @u, the length by parameter there, how far
- * each axis goes in a mm, and how that changes by parameter; 0 at a cusp. */
+/* The feed that the axes allow at @u, how far each axis goes in a mm there, and
+ * how that changes by parameter; 0 at a cusp. */
 struct curve_look {
-	double u, mm_s, by_u_mm;
+	double u, mm_s;
 	double heading[INTERP_NAXES], turn[INTERP_NAXES];
 };
 
 #define BUILD_SLOWEST_BESIDE	0.05	/* of the slowest, at a cusp */
-
-/* Of what the axes can do along a curve, what is kept for going along it.  The
- * rest is for following it. */
-struct curve_share {
-	double a, j;			/* of the acceleration, of the jerk */
-};
-
-/* Along the path. */
-struct curve_go {
-	double a_mm_s2, j_mm_s3;
-};
 
 /* A NURBS while it is cut into segments. */
 struct curve_plan {
@@ -60,9 +49,6 @@ struct curve_plan {
 	struct interp_curve curve;	/* as stored */
 	const double *here_mm;		/* where the program stands */
 	struct interp_nurbs_limits limits;	/* of the axes, on bends */
-	const struct curve_share *share;	/* of the whole curve; NULL:
-						 * fixed ones, which
-						 * build_curve_feed.c has */
 	double chord_mm_s;		/* the fastest round a radius of 1 mm
 					 * within the chord error */
 	double pulses_mm[INTERP_NAXES];	/* of each axis */
@@ -81,7 +67,6 @@ struct curve_plan {
 	double tried;			/* places so far */
 	/* The piece in hand: */
 	double from, least_mm_s, most_mm_s;
-	double piece_mm;		/* its length so far */
 	struct curve_look last;
 	struct curve_seen seen;
 };
@@ -138,41 +123,11 @@ struct curve_look build_curve_look(struct curve_plan *p, double u);
 void build_curve_look_between(struct curve_plan *p, const struct curve_look *a,
 			      const struct curve_look *b);
 
-/**
- * build_curve_bend_mm_s() - the feed at a place where bends allow @v and, of
- * axes beside the path, @beside.
- *
- * Where that is next to nothing it is more, but no axis is faster than it can.
- */
-double build_curve_bend_mm_s(const struct curve_plan *p,
-			     const struct interp_nurbs_way *w, double v,
-			     double beside);
-
-/** build_curve_feed() - the feed of the piece in hand, mm/s. */
+/** build_curve_feed() - the most that the chord error allows on the piece in
+ *  hand, mm/s. */
 double build_curve_feed(const struct curve_plan *p);
 
 /** build_curve_rate() - the most pulses that one of its axes goes in a mm. */
 double build_curve_rate(const struct curve_plan *p);
-
-/* build_curve_share.c: */
-
-/**
- * build_share_choose() - find the share with which the curve is over earliest.
- *
- * It is estimated for the curve alone, for a longer way of such curves, for a
- * jump, and at F; the least product is chosen.  There is no share, p->share is
- * NULL, for a curve that is short or has a cusp, and for one whose axes beside
- * the path turn much farther in some mm than in others.  Return: 0 or -ENOMEM.
- */
-int build_share_choose(struct curve_plan *p);
-
-/**
- * build_share_mm_s() - how fast its axes can follow it there with @share, mm/s.
- *
- * It is no cusp.
- */
-double build_share_mm_s(const struct curve_plan *p,
-			const struct interp_nurbs_way *w,
-			const struct curve_share *share);
 
 #endif /* PATH_BUILD_CURVE_H */

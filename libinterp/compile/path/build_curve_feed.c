@@ -54,9 +54,11 @@ void build_curve_limit(struct curve_plan *p)
 		p->slowest_mm_s = fmin(p->slowest_mm_s, l->v_mm_s[k]);
 }
 
-double build_curve_bend_mm_s(const struct curve_plan *p,
-			     const struct interp_nurbs_way *w, double v,
-			     double beside)
+/* Where bends allow @v and, of axes beside the path, @beside.  Where that is
+ * next to nothing it is more, but no axis is faster than it can. */
+static double bend_mm_s(const struct curve_plan *p,
+			const struct interp_nurbs_way *w, double v,
+			double beside)
 {
 	double most = HUGE_VAL;
 
@@ -111,8 +113,7 @@ static double beside_mm_s(const struct curve_plan *p,
 	return v;
 }
 
-/* Where no share has been chosen for the whole curve. */
-static double alone_mm_s(struct curve_plan *p, const struct interp_nurbs_way *w)
+static double feed_mm_s(struct curve_plan *p, const struct interp_nurbs_way *w)
 {
 	const double v = fmin(interp_nurbs_feed_mm_s(&p->walk.eval.c, w,
 						     &p->limits),
@@ -124,7 +125,7 @@ static double alone_mm_s(struct curve_plan *p, const struct interp_nurbs_way *w)
 		p->beside_mm_s = fmin(p->beside_mm_s, beside);
 		beside = w->cusp ? 0 : beside;
 	}
-	return build_curve_bend_mm_s(p, w, v, beside);
+	return bend_mm_s(p, w, v, beside);
 }
 
 struct curve_look build_curve_look(struct curve_plan *p, double u)
@@ -135,9 +136,7 @@ struct curve_look build_curve_look(struct curve_plan *p, double u)
 
 	interp_nurbs_way(e, u, &w);
 	learn(p, &w);
-	ret.mm_s = p->share && !w.cusp ? build_share_mm_s(p, &w, p->share) :
-					 alone_mm_s(p, &w);
-	ret.by_u_mm = w.by_u_mm;
+	ret.mm_s = feed_mm_s(p, &w);
 	if (w.cusp)
 		return ret;
 	for (uint32_t k = 0; k < p->curve.naxes; k++) {
@@ -225,7 +224,7 @@ double build_curve_feed(const struct curve_plan *p)
 {
 	const double chord = p->chord_mm_s / sqrt(p->seen.bend);
 
-	return fmin(p->least_mm_s, fmax(chord, p->slowest_mm_s));
+	return fmax(chord, p->slowest_mm_s);
 }
 
 double build_curve_rate(const struct curve_plan *p)

@@ -32,7 +32,7 @@ struct part {
 static bool same_word(const struct interp_build_word *a,
 		      const struct interp_build_word *b)
 {
-	return a->feed_mm_s == b->feed_mm_s && a->least_s == b->least_s &&
+	return a->feed_mm_s == b->feed_mm_s &&
 	       a->cond_letter == b->cond_letter &&
 	       a->cond_number == b->cond_number;
 }

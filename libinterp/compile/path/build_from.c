@@ -193,13 +193,6 @@ static int add_legs(struct from *f)
 	return err ? err : interp_build_line(f->way, to, &w, f->diag);
 }
 
-static bool is_power(uint32_t aux)
-{
-	return aux == INTERP_AUX_POWER_OFF ||
-	       aux == INTERP_AUX_POWER_POSITIVE ||
-	       aux == INTERP_AUX_POWER_NEGATIVE;
-}
-
 /* The argument of the last M code that was passed with @number.  0: none. */
 static uint32_t find_unanswered(const struct from *f)
 {
@@ -212,21 +205,36 @@ static uint32_t find_unanswered(const struct from *f)
 	return 0;
 }
 
-/* The outputs are as the program has left them at the place. */
+static int add_aux(struct from *f, uint32_t aux,
+		   const struct interp_build_word *w)
+{
+	return aux == INTERP_NAUX ? 0 :
+	       interp_build_action(f->way, INTERP_AUX, aux, w, f->diag);
+}
+
+/* The outputs are as the program has left them at the place, but for the
+ * polarity: what is not left out turns the electrode itself. */
 static int add_outputs(struct from *f)
 {
 	const struct interp_seg *s = segs_of(f->b);
-	uint32_t power = INTERP_NAUX, pump = INTERP_NAUX;
+	uint32_t off = INTERP_NAUX, pump = INTERP_NAUX, said = INTERP_NAUX;
 	const struct interp_build_word w = { .line = f->entry->line };
 	int err = 0;
 
 	for (uint32_t i = 0; i <= f->far; i++) {
-		if (s[i].kind == INTERP_AUX && is_power(s[i].arg))
-			power = s[i].arg;
-		else if (s[i].kind == INTERP_AUX)
-			pump = s[i].arg;
+		const uint32_t aux = INTERP_AUX_OF(s[i].arg);
+
+		if (s[i].kind != INTERP_AUX)
+			continue;
+		if (aux > INTERP_AUX_POWER_NEGATIVE)
+			pump = aux;
+		else
+			off = aux == INTERP_AUX_POWER_OFF ? aux : INTERP_NAUX;
+		if (i <= f->last && aux <= INTERP_AUX_POWER_NEGATIVE &&
+		    aux != INTERP_AUX_POWER_OFF)
+			said = aux;
 	}
-	f->entry->dead = power == INTERP_AUX_POWER_OFF;
+	f->entry->dead = off != INTERP_NAUX;
 	/* Without a way up there is a wire to be threaded. */
 	if (f->o->up < 0)
 		err = interp_build_action(f->way, INTERP_STOP, 0, &w, f->diag);
@@ -234,13 +242,11 @@ static int add_outputs(struct from *f)
 	if (err == 0 && f->entry->again)
 		err = interp_build_action(f->way, INTERP_MCODE,
 					  f->entry->again, &w, f->diag);
-	if (err == 0 && pump < INTERP_NAUX)
-		err = interp_build_action(f->way, INTERP_AUX, pump, &w,
-					  f->diag);
-	if (err == 0 && power < INTERP_NAUX)
-		err = interp_build_action(f->way, INTERP_AUX, power, &w,
-					  f->diag);
-	return err;
+	if (err == 0)
+		err = add_aux(f, pump, &w);
+	if (err == 0)
+		err = add_aux(f, said, &w);
+	return err ? err : add_aux(f, off, &w);
 }
 
 /* Both have the same columns, in the same order. */

@@ -95,6 +95,8 @@ struct interp_build {
 	uint16_t escape;		/* set by interp_build_escape() */
 	uint16_t stand_escape;		/* of the last motion */
 	bool off;			/* M5 is in force */
+	uint32_t said;			/* the last M3 or M4, enum interp_aux;
+					 * 0: none */
 	int lift_axis;			/* -1: none */
 	size_t timed;			/* the INTERP_TIMED that was begun
 					 * last */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* along.c - how fast axes can follow a path */
 #include "speed/along.h"
+#include "speed/ramp.h"
 #include "interp/smaller.h"
 
 #include <math.h>
@@ -41,13 +42,21 @@ static double comes_to_mm_s2(const struct interp_straight *s, double v_mm_s)
 	       sqrt(v_mm_s * s->j_mm_s3) : s->a_mm_s2;
 }
 
-/* The speed below @v at which a column leaves @left_mm_s3 of the jerk. */
+/* The speed below @v at which a column leaves @left_mm_s3 of the jerk.  Where
+ * its twist or its bend alone takes all of that, both take no more than twice
+ * as much: from there Newton's steps are few. */
 static double by_jerk_mm_s(const double *way,
 			   const struct interp_straight *kept,
 			   double left_mm_s3, double v)
 {
 	const double twist = fabs(way[2]), bend = 3 * fabs(way[1]);
+	const double bent = left_mm_s3 / bend;
 
+	if (twist * v * v * v > left_mm_s3)
+		v = ramp_root3(left_mm_s3 / twist);
+	if (bend * comes_to_mm_s2(kept, v) * v > left_mm_s3)
+		v = larger(bent / kept->a_mm_s2,
+			   ramp_root3(bent * bent / kept->j_mm_s3));
 	for (int i = 0; i < ROOT_STEPS; i++) {
 		const double a = comes_to_mm_s2(kept, v);
 		const double is = (twist * v * v + bend * a) * v;
@@ -56,7 +65,7 @@ static double by_jerk_mm_s(const double *way,
 
 		if (is <= left_mm_s3 * ROOT_NEAR)
 			break;
-		v = larger(v - (is - left_mm_s3) / slope, 0.3 * v);
+		v -= (is - left_mm_s3) / slope;
 	}
 	return v;
 }

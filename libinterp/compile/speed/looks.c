@@ -40,20 +40,12 @@ static struct rate rate_of(const struct making *m, uint32_t i, uint32_t k)
 			       ways_rate_off(&m->ways, i, k) };
 }
 
-/* How fast the axes of line @i are at most.  INFINITY: it is a rounding. */
-static double axes_mm_s(const struct making *m, uint32_t i)
+/* By how much it goes for sure. */
+static double sure_of(struct rate r)
 {
-	double v = INFINITY;
+	const double by = fabs(r.by);
 
-	for (uint32_t k = 0; k < m->to->axes.n; k++) {
-		const struct rate r = rate_of(m, i, k);
-		const double by = fabs(r.by);
-		const double sure = by * (1 - r.off / larger(by, 1));
-
-		if (sure * v > m->to->axes.v_mm_s[k])
-			v = m->to->axes.v_mm_s[k] / sure;
-	}
-	return v;
+	return by * (1 - r.off / larger(by, 1));
 }
 
 /* The machine goes along the lines: at the node behind line @i each axis makes
@@ -196,20 +188,25 @@ static int look_at_seg(struct making *m, const struct section *s)
  * goes by itself for sure. */
 static void bound(struct making *m, uint32_t i)
 {
-	struct look_all *to = m->to;
-	struct looks *k = &to->of[i];
-	const size_t each = to->axes.n * INTERP_AXES_WAY;
-	const float *a = to->way + k->at * each, *b = a + each;
-	double v = axes_mm_s(m, i);
+	const struct interp_axes *x = &m->to->axes;
+	struct looks *k = &m->to->of[i];
+	const size_t each = x->n * INTERP_AXES_WAY;
+	const float *a = m->to->way + k->at * each, *b = a + each;
+	double v = INFINITY;
 
-	for (uint32_t j = 0; j < to->axes.n; j++) {
+	for (uint32_t j = 0; j < x->n; j++) {
+		const double sure = sure_of(rate_of(m, i, j));
 		const double by = fabs((double)(a[j * INTERP_AXES_WAY] +
 						b[j * INTERP_AXES_WAY])) / 2;
 
-		if (by * v > to->axes.v_mm_s[j])
-			v = to->axes.v_mm_s[j] / by;
+		if (larger(sure, by) * v > x->v_mm_s[j])
+			v = x->v_mm_s[j] / larger(sure, by);
+		if (sure * (double)k->a_mm_s2 > x->a_mm_s2[j])
+			k->a_mm_s2 = (float)(x->a_mm_s2[j] / sure);
+		if (sure * (double)k->j_mm_s3 > x->j_mm_s3[j])
+			k->j_mm_s3 = (float)(x->j_mm_s3[j] / sure);
 	}
-	if (v < INFINITY && !(to->p->segs[i].flags & INTERP_SEG_KNOWN))
+	if (v < INFINITY)
 		k->own_mm_s = (float)v;
 }
 

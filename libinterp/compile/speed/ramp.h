@@ -11,14 +11,8 @@
 #include <stdint.h>
 #include <string.h>
 
-/** ramp_s() - the time in which it gets faster by @v_mm_s, s. */
-static inline double ramp_s(double v_mm_s, double a, double j)
-{
-	return v_mm_s * j >= a * a ? v_mm_s / a + a / j : 2 * sqrt(v_mm_s / j);
-}
-
-/** ramp_slope_mm_s2() - what is left of acceleration @a in the mean of that
- *  ramp. */
+/** ramp_slope_mm_s2() - what is left of acceleration @a in the mean of a
+ *  ramp that gets faster by @v_mm_s. */
 static inline double ramp_slope_mm_s2(double v_mm_s, double a, double j)
 {
 	return v_mm_s * j >= a * a ? v_mm_s / (v_mm_s / a + a / j) :

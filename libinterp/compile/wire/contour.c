@@ -37,16 +37,17 @@ void contour_init(struct contour *k, const struct interp_wire *w,
 	begin_here(k);
 }
 
-int contour_turn(struct contour *k, double deg, struct interp_diag *diag)
+int contour_turn(struct contour *k, double deg, bool mirrored,
+		 struct interp_diag *diag)
 {
 	int err;
 
-	if (deg == k->guides.turn.deg)
+	if (deg == k->guides.turn.deg && mirrored == k->guides.turn.mirrored)
 		return 0;
 	err = contour_flush(k, diag);
 	if (err)
 		return err;
-	k->guides.turn = interp_turn_of(deg);
+	k->guides.turn = interp_turn_of(deg, mirrored);
 	begin_here(k);
 	return 0;
 }
@@ -72,6 +73,21 @@ double contour_tangent(const struct contour *k, double deg)
 	return tan(deg * ANGLE_DEGREE);
 }
 
+int contour_set_taper(const struct contour *k, double deg, double *ret,
+		      struct interp_diag *diag)
+{
+	*ret = contour_tangent(k, deg);
+	diag->line = diag->column = 0;
+	if (deg != 0 && !guides_on(&k->guides))
+		return interp_diag_say(diag, "a taper on a machine without "
+				       "wire guides; wire.guides absolute or "
+				       "relative in the machine file");
+	if (isnan(*ret))
+		return interp_diag_say(diag, "a taper that leans too far; up "
+				       "to wire.angle_max_deg");
+	return 0;
+}
+
 /* -- Collected ------------------------------------------------------------ */
 
 static bool is_on(double offset_mm, double slope)
@@ -92,7 +108,7 @@ static inline uint64_t bits(double v)
 static inline bool is_idle(const struct contour *k)
 {
 	return k->plain && !k->n && !k->recording &&
-	       !(bits(k->offset_mm) | bits(k->slope) |
+	       !(bits(k->end.mm) | bits(k->offset_mm) | bits(k->slope) |
 		 bits(k->last_offset_mm) | bits(k->last_slope));
 }
 
@@ -104,10 +120,17 @@ static int refuse_record(const struct contour *k, struct interp_diag *diag)
 			       "or behind it");
 }
 
+/* Does the last motion wait for the next one, to round their corner? */
+static bool has_corner(const struct contour *k)
+{
+	return k->n && k->m[k->n - 1].end.mm != 0;
+}
+
 int contour_flush(struct contour *k, struct interp_diag *diag)
 {
 	const int err = k->recording ? refuse_record(k, diag) :
-				     contour_release(k, NULL, diag);
+			has_corner(k) ? contour_refuse_corner(k, diag) :
+					contour_release(k, NULL, diag);
 
 	return err ? err : interp_build_flush(k->guides.build, diag);
 }
@@ -184,6 +207,7 @@ static int cross_over(struct contour *k, const struct contour_motion *next,
 static int take_one(struct contour *k, struct contour_motion *m,
 		    struct interp_diag *diag)
 {
+	const bool corner = has_corner(k);
 	int err;
 
 	m->offset_mm = k->offset_mm;
@@ -193,6 +217,13 @@ static int take_one(struct contour *k, struct contour_motion *m,
 	for (int p = 0; !m->lead && p < 2; p++)
 		m->c[p] = curve_evened(&m->c[p]);
 	err = check_lead(k, m, diag);
+	if (!err && corner)
+		err = contour_cut_corner(k, m, diag);
+	if (err == 1) {
+		k->end.mm = 0;
+		memcpy(k->here_mm, m->end_mm, sizeof(k->here_mm));
+		return 0;
+	}
 	if (!err && crosses(k))
 		err = cross_over(k, m, diag);
 	if (!err && !is_on(k->last_offset_mm, k->last_slope) && !k->recording)
@@ -202,6 +233,11 @@ static int take_one(struct contour *k, struct contour_motion *m,
 		err = contour_keep(k, m, diag);
 	k->last_offset_mm = k->offset_mm;
 	k->last_slope = k->slope;
+	/* It was held back for the corner alone. */
+	if (!err && corner && k->plain && !k->recording && !has_corner(k) &&
+	    !is_on(k->offset_mm, k->slope))
+		err = contour_release(k, NULL, diag);
+	k->end.mm = 0;
 	memcpy(k->here_mm, m->end_mm, sizeof(k->here_mm));
 	return err;
 }
@@ -225,6 +261,7 @@ static int take_halves(struct contour *k, const struct contour_motion *m,
 	double *mid = half[0].end_mm;
 	int err;
 
+	half[0].end.mm = 0;
 	for (int i = 0; i < INTERP_NAXES; i++)
 		mid[i] = (m->from_mm[i] + m->end_mm[i]) / 2;
 	for (int p = 0; p < 2; p++) {
@@ -264,7 +301,7 @@ static void motion_init(const struct contour *k, struct contour_motion *m,
 			const double end_mm[INTERP_NAXES],
 			const struct interp_build_word *w)
 {
-	*m = (struct contour_motion) { .word = *w };
+	*m = (struct contour_motion) { .word = *w, .end = k->end };
 	memcpy(m->from_mm, k->here_mm, sizeof(m->from_mm));
 	memcpy(m->end_mm, end_mm, sizeof(m->end_mm));
 	m->c[0] = curve_line(place(k->here_mm, false), place(end_mm, false));
@@ -320,6 +357,8 @@ static int take_or_stay(struct contour *k, struct contour_motion *m,
 	if (fmax(curve_length(&m->c[0]), curve_length(&m->c[1])) >=
 	    CURVE_SAME_MM)
 		return take(k, m, diag);
+	if (k->end.mm != 0)
+		return contour_refuse_still(m, diag);
 	if (contour_leads(k) && k->offset_mm != 0 && !moves(k, m->end_mm))
 		return contour_refuse_lead(m, fabs(k->offset_mm), diag);
 	return stay(k, m->end_mm, &m->word, diag);

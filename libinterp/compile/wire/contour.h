@@ -39,6 +39,7 @@ struct contour {
 					 * most motions are passed on */
 	double offset_mm, slope;	/* in force for the next motion ... */
 	enum interp_taper_corner corner;
+	struct contour_corner end;	/* of the next motion */
 	double last_offset_mm, last_slope;	/* ... and for the last one */
 	struct contour_motion *m;	/* collected */
 	uint32_t n;
@@ -62,13 +63,31 @@ void contour_free(struct contour *k);
  */
 void contour_side(struct contour *k, double offset_mm, double slope);
 
+/** contour_corner() - the next motion ends in a corner that is rounded or
+ *  cut. */
+static inline void contour_corner(struct contour *k, struct contour_corner end)
+{
+	k->end = end;
+}
+
 /** contour_tangent() - the tangent of a taper of @deg; NAN: the machine cannot
  *  cut it. */
 double contour_tangent(const struct contour *k, double deg);
 
+/**
+ * contour_set_taper() - the slope, + to the left, of a taper of @deg that is
+ * set at the machine.
+ *
+ * Return: 0, or -EINVAL with @diag filled: the machine cannot cut it.
+ */
+int contour_set_taper(const struct contour *k, double deg, double *ret,
+		      struct interp_diag *diag);
+
 /** contour_turn() - from here on the places of the program are turned by @deg
- *  (interp/turn.h); cut what is collected, and see here_mm again. */
-int contour_turn(struct contour *k, double deg, struct interp_diag *diag);
+ *  and mirrored (interp/turn.h); cut what is collected, and see here_mm
+ *  again. */
+int contour_turn(struct contour *k, double deg, bool mirrored,
+		 struct interp_diag *diag);
 
 /* These are as the builder's functions of the same names. */
 int contour_line(struct contour *k, const double end_mm[INTERP_NAXES],
@@ -107,6 +126,20 @@ int contour_keep(struct contour *k, const struct contour_motion *m,
 /** contour_keep_step() - keep a step on the spot where @m ends. */
 int contour_keep_step(struct contour *k, const struct contour_motion *m,
 		      struct interp_diag *diag);
+
+/* -- corner_word.c --------------------------------------------------------- */
+
+/** contour_cut_corner() - put what the last motion's corner asks for between it
+ *  and @b, which follows.  Return: also 1 if nothing is left of @b. */
+int contour_cut_corner(struct contour *k, struct contour_motion *b,
+		       struct interp_diag *diag);
+
+/** contour_refuse_corner() - nothing follows the last motion's corner. */
+int contour_refuse_corner(const struct contour *k, struct interp_diag *diag);
+
+/** contour_refuse_still() - @m has a corner, and no length. */
+int contour_refuse_still(const struct contour_motion *m,
+			 struct interp_diag *diag);
 
 /* -- contour_curve.c ------------------------------------------------------ */
 

@@ -16,6 +16,13 @@
 #include "interp/wire.h"
 #include "wire/curve.h"
 
+/* What a word makes of the corner behind a motion. */
+struct contour_corner {
+	double mm;			/* 0: nothing */
+	bool cut;			/* a straight line, so far from the
+					 * corner; else an arc of that radius */
+};
+
 /* A motion as programmed, on both planes. */
 struct contour_motion {
 	struct curve c[2];
@@ -24,6 +31,7 @@ struct contour_motion {
 	double offset_mm;		/* of the wire; + to the left */
 	double slope;			/* tangent of the taper; + left */
 	enum interp_taper_corner corner;
+	struct contour_corner end;
 	bool lead;			/* the offset is reached or left here */
 	bool step;			/* from pass to pass, on the spot */
 	uint32_t todo, ntodo;		/* actions behind it */

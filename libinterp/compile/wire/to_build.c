@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* to_build.c - a work system that is turned, on its way to the builder */
+/* to_build.c - a work system, or a figure, that is turned or mirrored, on its
+ * way to the builder */
 #include "wire/to_build.h"
 
 #include <errno.h>
@@ -7,16 +8,6 @@
 #include <string.h>
 
 #define XY	(1u << INTERP_X | 1u << INTERP_Y)
-
-/* Two numbers, from X (U) toward Y (V). */
-static void rotate(const struct interp_turn *t, const double from[2],
-		   double to[2])
-{
-	const double x = from[0], y = from[1];
-
-	to[0] = t->cos * x - t->sin * y;
-	to[1] = t->sin * x + t->cos * y;
-}
 
 void guides_here(const struct guides *g, double ret_q_mm[INTERP_NAXES])
 {
@@ -28,7 +19,7 @@ int guides_line(const struct guides *g, const double end_mm[INTERP_NAXES],
 {
 	double to_mm[INTERP_NAXES];
 
-	if (g->turn.deg == 0)
+	if (!interp_turn_is_on(&g->turn))
 		return interp_build_line(g->build, end_mm, w, diag);
 	interp_turn_to(&g->turn, end_mm, to_mm);
 	return interp_build_line(g->build, to_mm, w, diag);
@@ -38,8 +29,10 @@ static int refuse_plane(const struct interp_turn *t, const char *what,
 			struct interp_diag *diag)
 {
 	return interp_diag_say(diag, "%s beside the plane X Y, where the work "
-			       "is turned by %g degrees; one in X Y, or an "
-			       "offset without a turn", what, t->deg);
+			       "or the figure is turned by %g degrees%s; one "
+			       "in X Y, or places that are not turned",
+			       what, t->deg, t->mirrored ?
+			       " and mirrored" : "");
 }
 
 int guides_arc(const struct guides *g, const double end_mm[INTERP_NAXES],
@@ -49,16 +42,18 @@ int guides_arc(const struct guides *g, const double end_mm[INTERP_NAXES],
 	struct interp_build_arc turned = *arc;
 	double to_mm[INTERP_NAXES], centre[2];
 
-	if (g->turn.deg == 0)
+	if (!interp_turn_is_on(&g->turn))
 		return interp_build_arc(g->build, end_mm, arc, w, diag);
 	if (arc->axis_b != arc->axis_a + 1 ||
 	    (arc->axis_a != INTERP_X && arc->axis_a != INTERP_U))
 		return refuse_plane(&g->turn, "an arc", diag);
 	interp_turn_to(&g->turn, end_mm, to_mm);
-	rotate(&g->turn, (double[]) { arc->centre_a_mm,
-					    arc->centre_b_mm }, centre);
+	interp_turn_plane(&g->turn, (double[]) { arc->centre_a_mm,
+						 arc->centre_b_mm }, centre);
 	turned.centre_a_mm = centre[0];
 	turned.centre_b_mm = centre[1];
+	if (g->turn.mirrored)
+		turned.sweep = -arc->sweep;
 	return interp_build_arc(g->build, to_mm, &turned, w, diag);
 }
 
@@ -69,11 +64,15 @@ int guides_pair(const struct guides *g, const double end_mm[INTERP_NAXES],
 	struct interp_build_contour two[2] = { contour[0], contour[1] };
 	double to_mm[INTERP_NAXES];
 
-	if (g->turn.deg == 0)
+	if (!interp_turn_is_on(&g->turn))
 		return interp_build_pair(g->build, end_mm, contour, w, diag);
 	interp_turn_to(&g->turn, end_mm, to_mm);
-	for (int i = 0; i < 2; i++)
-		rotate(&g->turn, contour[i].centre_mm, two[i].centre_mm);
+	for (int i = 0; i < 2; i++) {
+		interp_turn_plane(&g->turn, contour[i].centre_mm,
+				  two[i].centre_mm);
+		if (g->turn.mirrored)
+			two[i].sweep = -contour[i].sweep;
+	}
 	return interp_build_pair(g->build, to_mm, two, w, diag);
 }
 
@@ -104,7 +103,7 @@ static int turn_points(const struct interp_turn *t,
 		for (uint32_t i = 0; a >= 0 && i < c->nurbs.npoints; i++) {
 			double *at = points + i * row, to[2];
 
-			rotate(t, (double[]) { at[a], at[b] }, to);
+			interp_turn_plane(t, (double[]) { at[a], at[b] }, to);
 			at[a] = to[0];
 			at[b] = to[1];
 		}
@@ -121,7 +120,7 @@ int guides_curve(const struct guides *g, const struct interp_build_curve *c,
 	double *points;
 	int err;
 
-	if (g->turn.deg == 0)
+	if (!interp_turn_is_on(&g->turn))
 		return interp_build_curve(g->build, c, w, diag);
 	points = malloc(bytes);
 	if (!points)
@@ -145,7 +144,7 @@ int guides_escape(const struct guides *g, const struct interp_escape *e)
 {
 	struct interp_escape turned;
 
-	if (g->turn.deg == 0 || !e)
+	if (!interp_turn_is_on(&g->turn) || !e)
 		return interp_build_escape(g->build, e);
 	if (!goes_together(e->home) || !goes_together(e->out))
 		return interp_build_escape(g->build, NULL);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* turn.c - a work system that is turned about Z */
+/* turn.c - a work system, or a figure, that is turned about Z or mirrored */
 #include "interp/turn.h"
 
 #include "interp/angle.h"
@@ -7,51 +7,77 @@
 #include <math.h>
 #include <string.h>
 
-struct interp_turn interp_turn_of(double deg)
+struct interp_turn interp_turn_of(double deg, bool mirrored)
 {
-	struct interp_turn t = { .deg = deg };
+	static const double quarter[4] = { 1, 0, -1, 0 };
+	struct interp_turn t = { .deg = deg, .mirrored = mirrored };
+	const double n = deg / 90;
 
-	if (deg == 0)
+	if (!interp_turn_is_on(&t))
 		return t;
-	t.cos = cos(deg * ANGLE_DEGREE);
-	t.sin = sin(deg * ANGLE_DEGREE);
+	if (n == floor(n)) {
+		const int k = (int)(n - 4 * floor(n / 4));
+
+		t.cos = quarter[k];
+		t.sin = quarter[(k + 3) % 4];
+	} else {
+		t.cos = cos(deg * ANGLE_DEGREE);
+		t.sin = sin(deg * ANGLE_DEGREE);
+	}
 	return t;
 }
 
-/* Two numbers, from X (U) toward Y (V). */
-static void rotate(double c, double s, const double from[2], double to[2])
+struct interp_turn interp_turn_image(double deg, bool x, bool y,
+				     bool exchanged)
 {
-	const double x = from[0], y = from[1];
+	const double image = exchanged ? 90 : x ? 180 : 0;
 
-	to[0] = c * x - s * y;
-	to[1] = s * x + c * y;
+	return interp_turn_of(remainder(deg + image, 360),
+			      exchanged || x != y);
 }
 
-static void rotate_axes(double c, double s, const double from[INTERP_NAXES],
-			double to[INTERP_NAXES])
+void interp_turn_plane(const struct interp_turn *t, const double from[2],
+		       double to[2])
+{
+	const double x = from[0], y = t->mirrored ? -from[1] : from[1];
+
+	to[0] = t->cos * x - t->sin * y;
+	to[1] = t->sin * x + t->cos * y;
+}
+
+void interp_turn_plane_back(const struct interp_turn *t, const double from[2],
+			    double to[2])
+{
+	const double x = from[0], y = from[1];
+	const double q = t->cos * y - t->sin * x;
+
+	to[0] = t->cos * x + t->sin * y;
+	to[1] = t->mirrored ? -q : q;
+}
+
+static void turn_axes(const struct interp_turn *t,
+		      void (*plane)(const struct interp_turn *, const double[2],
+				    double[2]),
+		      const double from[INTERP_NAXES], double to[INTERP_NAXES])
 {
 	if (to != from)
 		memcpy(to, from, INTERP_NAXES * sizeof(*to));
-	rotate(c, s, from + INTERP_X, to + INTERP_X);
-	rotate(c, s, from + INTERP_U, to + INTERP_U);
+	if (!interp_turn_is_on(t))
+		return;
+	plane(t, from + INTERP_X, to + INTERP_X);
+	plane(t, from + INTERP_U, to + INTERP_U);
 }
 
 void interp_turn_to(const struct interp_turn *t,
 		    const double q_mm[INTERP_NAXES],
 		    double ret_mm[INTERP_NAXES])
 {
-	if (t->deg != 0)
-		rotate_axes(t->cos, t->sin, q_mm, ret_mm);
-	else if (ret_mm != q_mm)
-		memcpy(ret_mm, q_mm, INTERP_NAXES * sizeof(*ret_mm));
+	turn_axes(t, interp_turn_plane, q_mm, ret_mm);
 }
 
 void interp_turn_back(const struct interp_turn *t,
 		      const double mm[INTERP_NAXES],
 		      double ret_q_mm[INTERP_NAXES])
 {
-	if (t->deg != 0)
-		rotate_axes(t->cos, -t->sin, mm, ret_q_mm);
-	else if (ret_q_mm != mm)
-		memcpy(ret_q_mm, mm, INTERP_NAXES * sizeof(*ret_q_mm));
+	turn_axes(t, interp_turn_plane_back, mm, ret_q_mm);
 }

@@ -106,6 +106,15 @@ class Scene:
         self.mark(what)
         return s
 
+    def until_at(self, what, reached, seconds=60):
+        """Wait for a place of X in mm."""
+        end = time.monotonic() + seconds
+        while not reached(self.status()["pos_mm"][0]):
+            if time.monotonic() > end:
+                self.in_vain(f"{what}: waited in vain: {self.status()}")
+            time.sleep(LOOK_S)
+        self.mark(what)
+
     def in_vain(self, what):
         self.mark(what)
         raise Vain(what)
@@ -290,6 +299,18 @@ def harmless(s):
     return {"harmless": got}
 
 
+def lines(name, nodes):
+    """A generator on lines: over each change of condition, and back by a short."""
+    with Scene(name, nodes) as s:
+        s.tell("gap", 25)
+        s.submit(str(R / f"{name}.ngc"))
+        s.start()
+        for gap_v, beyond in (3, lambda x: x > 2.3), (25, lambda x: x < 1.8):
+            s.until_at(f"gap of {gap_v} V", beyond)
+            s.tell("gap", gap_v)
+        s.until("idle", 60, state="idle")
+
+
 class Plc(threading.Thread):
     """On the drives' own bus: its request each 20 ms, with a turned toggle."""
 
@@ -365,5 +386,6 @@ if __name__ == "__main__":
     for name in "lagging", "led", "coupled":
         whole_job(name, [1, 2], lags=(30, 21.5))
     brakes("brakes", [1, 2, 3])
+    lines("lines", [1, 2, 3])
     shared("shared", [1, 2])
     faults("faults", [1, 2])

@@ -8,8 +8,10 @@ import pathlib
 import random
 import struct
 import sys
+import threading
 import time
 
+from commission import commission
 from can402 import CUTTING, FIFO, R, RUNNING, Scene, frame
 
 
@@ -56,8 +58,9 @@ def refused():
         1: {"most": {"60c2:1": 8}},
         2: {"refuse": {"605a:0": "06090030"}},
         3: {"identity": [0xbad, 1, 2, 3]}, 4: {"without": ["1016"]},
+        5: {"unmappable": ["60fd"]},
     }) as s:
-        for n in 1, 2, 3, 4:
+        for n in 1, 2, 3, 4, 5:
             until_log(s, f"(node {n}) refuses its configuration", 20)
 
 
@@ -79,6 +82,247 @@ def late():
         s.more["before"] = s.status()
         s.more["start"] = s.start()
         s.until("cutting", 10, state=CUTTING)
+
+
+def objects():
+    """`edmctl drive`: what it shows, reads, sets and refuses."""
+    with scene("strict-objects", {1: {}, 2: {"without": ["1010"]}}) as s:
+        def drive(*words):
+            return s.ctl("drive", *words)
+
+        s.tell("gap", 25)
+        until_log(s, "(node 1) is up", 30)
+        until_log(s, "(node 2) is up", 30)
+        out = s.more["out"] = {}
+        out["cold"] = s.ctl("--json", "drive")
+        out["get"] = [drive("get", "X", *what) for what in (
+            ("6064",), ("position", "actual", "value"), ("60c2:2",),
+            ("Statusword",), ("5fff",), ("1008",), ("6064",), ("nonsense",))]
+        out["set"] = [drive("set", "X", *what) for what in (
+            ("6065", "1500"), ("following error window", "2000000"),
+            ("6064", "5"), ("607a", "5"), ("1016:1", "0"), ("605a", "1"),
+            ("6065", "x"), ("6065", "1.5"))]
+        out["store"] = [drive("store", axis) for axis in "XYZ"]
+        s.tell("warn", 1, "3283", "0102030405")
+        time.sleep(0.5)
+        out["emcy"] = drive("emcy")
+        job(s, "strict-faults")
+        s.until("cutting", 10, state=CUTTING)
+        out["scope"] = s.ctl("--json", "drive", "scope", "X", "0.5")
+        out["in a cut"] = [drive("list"), drive("get", "Y", "6041"),
+                           drive("set", "Y", "6065", "1400"),
+                           drive("store", "X")]
+        out["cuts on"] = s.status()
+        s.ctl("stop")
+        s.until("idle", 10, state="idle")
+        out["torque"] = drive("set", "Y", "6065", "1400")
+        s.ctl("estop")
+        s.until("fault", 10, state="fault")
+        time.sleep(0.5)
+        out["without"] = drive("set", "Y", "6065", "1400")
+        out["turned"] = drive("set", "Y", "polarity", "0x80")
+        time.sleep(0.3)
+        out["after"] = s.ctl("--json", "drive")
+        out["alarms"] = s.ctl("alarms")
+        out["reset"] = s.ctl("reset")
+
+
+def homes():
+    """Each drive finds its zero by itself; then what ends that before."""
+    with scene("strict-home", {
+        1: {"home": {"at": -334500, "stale": True, "late": 15}},
+        2: {"home": {"at": 17000, "leave": True, "torque": True,
+                     "no10": True}, "mode_lag": 0.2},
+        3: {"home": {}},
+    }) as s:
+        for n in 1, 2, 3:
+            until_log(s, f"(node {n}) is up", 30)
+        out = s.more["out"] = {}
+
+        def home(axis):
+            answer = s.ctl("home", axis, "--wait")
+            s.mark(f"homed {axis} {len(out)}")
+            return answer
+
+        def begins(what):
+            """Its drive is jammed while it looks for its zero."""
+            s.tell("jam", 1)
+            s.ctl("home", "X")
+            time.sleep(1.5)
+            s.mark(f"{what}: now")
+            return s.status()["state"]
+
+        def ends(what):
+            s.tell("unjam", 1)
+            time.sleep(0.5)
+            out[f"{what}: lost"] = s.status()["lost"]
+
+        for axis in "XYZ":
+            out[f"home {axis}"] = home(axis)
+        out["homed"] = s.status()
+        out["again"] = [home("Z"), home("X")]
+        out["job"] = job(s, "strict-home")
+        s.until("job ends", 60, state="idle")
+        s.mark("there")
+
+        out["hold: state"] = begins("hold")
+        s.ctl("hold")
+        s.until("hold: idle", 10, state="idle")
+        ends("hold")
+        out["hold: home"] = home("X")
+
+        out["estop: state"] = begins("estop")
+        s.ctl("estop")
+        s.until("estop: fault", 10, state="fault")
+        ends("estop")
+        out["estop: reset"] = s.ctl("reset")
+        time.sleep(0.5)
+        out["estop: home"] = home("X")
+
+        s.tell("fails", 1)
+        out["fails: home"] = home("X")
+        out["fails: fault"] = s.status()["fault"]
+        out["fails: reset"] = s.ctl("reset")
+        out["fails: again"] = home("X")
+
+        out["off: state"] = begins("off")
+        s.tell("off", 1)
+        s.until("off: fault", 10, state="fault")
+        s.tell("on", 1)
+        ends("off")
+        time.sleep(1)
+        out["off: reset"] = s.ctl("reset")
+        time.sleep(2)
+        out["off: home"] = home("X")
+        out["last job"] = job(s, "strict-home")
+        s.until("last job ends", 60, state="idle")
+
+
+def asked():
+    """Drives that answer late, abort, are reset meanwhile, or claim a mode that
+    they do not have, while somebody asks for their objects and homes them."""
+    with scene("strict-asked", {
+        1: {"slow": {"6065:0": 1.5}, "home": {"at": 500}, "no6": True},
+        2: {"home": {"at": 17000}, "refuse": {"6085:0": "08000020"}},
+        3: {"home": {}},
+    }) as s:
+        for n in 1, 2, 3:
+            until_log(s, f"(node {n}) is up", 30)
+        out = s.more["out"] = {}
+
+        def drive(*words):
+            return s.ctl("drive", *words)
+
+        out["late"] = [drive("get", "X", "6065"), drive("get", "X", "60c2:2"),
+                       drive("get", "X", "1000")]
+        time.sleep(2)
+        out["after late"] = drive("get", "X", "60c2:2")
+        out["aborts"] = drive("set", "Y", "6085", "5000")
+        out["none"] = [drive("get", axis, "6064") for axis in "AQ"]
+        out["many"] = drive("get", "X", "6064:300")
+        asks = []
+        other = threading.Thread(target=lambda: asks.append(
+            drive("get", "X", "6065")))
+        other.start()
+        time.sleep(0.3)
+        out["both"] = drive("get", "Y", "6064")
+        s.tell("off", 1)
+        other.join()
+        out["off"] = asks[0]
+        out["is off"] = drive("get", "X", "6064")
+        s.tell("on", 1)
+        s.until("fault", 10, state=("fault", "idle"))
+        time.sleep(3)
+        out["reset"] = s.ctl("reset")
+        time.sleep(3)
+        out["again"] = drive("get", "X", "1000")
+        out["no mode 6"] = s.ctl("home", "X", "--wait")
+        out["no mode 6: state"] = s.status()
+        out["no mode 6: reset"] = s.ctl("reset")
+        time.sleep(1)
+        out["well"] = s.ctl("home", "Y", "--wait")
+
+
+def inputs():
+    """A home and limit switches and an e-stop, wired to the drives."""
+    with scene("strict-inputs", {
+        1: {"inputs": {"0": -700000, "1": [300000], "2": -334500}},
+        2: {"inputs": {"16": 1}},
+    }) as s:
+        for n in 1, 2:
+            until_log(s, f"(node {n}) is up", 30)
+        out = s.more["out"] = {}
+
+        def does(what, *words):
+            out[what] = s.ctl(*words)
+            time.sleep(0.3)
+            out[f"{what}: state"] = s.status()
+            s.mark(what)
+
+        does("home", "home", "X", "--wait")
+        does("to high", "jog", "X", "12", "--wait")
+        does("to high: reset", "reset")
+        does("farther", "jog", "X", "0.1", "--wait")
+        does("another axis", "jog", "Y", "1", "--wait")
+        does("back", "jog", "X", "-1", "--wait")
+        s.tell("input", 1, 0, 1)
+        does("on at rest", "status")
+        does("toward it", "jog", "X", "-0.1", "--wait")
+        does("from it", "jog", "X", "0.1", "--wait")
+        s.tell("input", 1, 0, 0)
+        s.ctl("jog", "X", "-5")
+        time.sleep(0.5)
+        s.tell("input", 1, 1, 1)
+        does("wrong end", "status")
+        does("wrong end: reset", "reset")
+        does("wrong end: on", "jog", "X", "-0.1", "--wait")
+        does("wrong end: back", "jog", "X", "0.1", "--wait")
+        s.tell("input", 1, 1, 0)
+        does("again", "jog", "X", "-0.1", "--wait")
+        s.ctl("jog", "X", "-1")
+        time.sleep(0.3)
+        s.tell("input", 2, 16, 0)
+        s.until("estop", 5, state="fault")
+        does("estop: pressed", "reset")
+        s.tell("input", 2, 16, 1)
+        time.sleep(0.3)
+        does("estop: let go", "status")
+        does("estop: reset", "reset")
+        does("estop: jog", "jog", "X", "-0.1", "--wait")
+        s.ctl("jog", "X", "-1")
+        time.sleep(0.3)
+        s.tell("loses", 2)
+        s.until("loses", 5, state="fault")
+        s.tell("finds", 2)
+        time.sleep(0.3)
+        does("loses: reset", "reset")
+        time.sleep(2)
+        out["job"] = job(s, "strict-inputs")
+        s.until("job ends", 60, state="idle")
+
+
+def interpolated():
+    """One that has mode 7 and not 8 beside one that has 8: home, a job, an
+    e-stop in it, and on to its end."""
+    with scene("strict-ip", {
+        1: {"ip": True, "home": {"at": -334500}, "mode_lag": 0.1}, 2: {},
+    }) as s:
+        until_log(s, "(node 1) is up", 30)
+        until_log(s, "(node 2) is up", 30)
+        out = s.more["out"] = {}
+        out["home"] = s.ctl("home", "X", "--wait")
+        s.mark("homed")
+        out["job"] = job(s, "strict-ip")
+        s.until("running", 10, state=RUNNING)
+        time.sleep(0.5)
+        s.ctl("estop")
+        s.until("estop", 10, state="fault")
+        time.sleep(1)
+        out["reset"] = s.ctl("reset")
+        time.sleep(0.5)
+        out["start"] = s.start()
+        s.until("end", 60, state="idle")
+        out["drives"] = s.ctl("--json", "drive")
 
 
 # What is done while it cuts, and undone.
@@ -312,7 +556,8 @@ def recover(s, what):
 
 
 if __name__ == "__main__":
-    SCENES = {"up": whole, "refused": refused, "late": late, "faults": faults,
+    SCENES = {"up": whole, "refused": refused, "late": late,
+              "objects": objects, "homes": homes, "asked": asked, "inputs": inputs, "commission": commission, "ip": interpolated, "faults": faults,
               "attack": lambda: attack(int(sys.argv[2]), int(sys.argv[3])),
               "noise": lambda: noise(int(sys.argv[2]), 3 * int(sys.argv[3]))}
     for which in sys.argv[4].split(","):

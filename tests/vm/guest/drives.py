@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """CiA 402 drives on one CAN interface, each a canopen LocalNode.
 
-drives.py INTERFACE COMMANDS NODE...
+drives.py INTERFACE COMMANDS [--every S] NODE...
 
 Object dictionary, SDO, NMT, heartbeat and EMCY are canopen's, and what the
 PDOs carry is read by it from what the master wrote.  Here are the state machine
 of CiA 402, a motor, and the watch on SYNC and on the master's heartbeat.
 
+With --every, a SYNC comes every S by definition, and there is no other clock: on a
+bus that waits for its drives they miss nothing, however busy the host is.
+
 COMMANDS is a FIFO with a line for each thing to do or to go wrong:
-    emcy N CODE | clear N | leave N | mute N | unmute N | skip N K | drop N K |
-    jam N | unjam N | lag N GAIN | reboot N | gap V | report FILE | quit
+    emcy N CODE | brake N PERIODS | clear N | leave N | mute N | unmute N | skip N K |
+    drop N K | jam N | unjam N | push N BY | lag N GAIN | reboot N | gap V |
+    report FILE | quit
 A report has a row for each SYNC: its time, the generator's flags, and of each
 drive its state and its place.  It also has what came between the rows: each line
 of COMMANDS, NMT, and the PLC's request where it is another than before, with its
@@ -114,10 +118,23 @@ def dictionary():
     return od
 
 
+class Clock:
+    """Of this host, or made of SYNCs."""
+
+    def __init__(self):
+        self.every, self.syncs = 0, 0
+
+    def __call__(self):
+        return self.syncs * self.every if self.every else time.monotonic()
+
+
+clock = Clock()
+
+
 class Task:
     def __init__(self, net, can_id, data, period):
         self.net, self.id, self.data = net, can_id, bytes(data)
-        self.period, self.due = period, time.monotonic() + period
+        self.period, self.due = period, clock() + period
 
     def stop(self):
         if self in self.net.tasks:
@@ -176,6 +193,7 @@ class Drive:
         self.node = net.create_node(node, dictionary())
         self.id = node
         self.muted = False
+        self.brake = 5                      # periods until it is released
         self.place = 1000 * node            # increments
         self.lag_1_s = 0                    # its position gain; 0: at once
         self.node.add_write_callback(self.on_write)
@@ -229,7 +247,7 @@ class Drive:
             self.net.subscribe(0x700 + (word >> 16), self.on_master)
 
     def on_master(self, can_id, data, timestamp):
-        self.master_heard = time.monotonic()
+        self.master_heard = clock()
 
     def on_rpdo(self, can_id, data, timestamp):
         if self.drop > 0:
@@ -267,7 +285,7 @@ class Drive:
         if to == ENABLED:
             # As if a brake had to be released.
             self.enabling += 1
-            if self.enabling < 5:
+            if self.enabling < self.brake:
                 return
         self.enabling = 0
         self.state = to or self.state
@@ -320,7 +338,8 @@ class Stage:
         self.net.subscribe(PLC_ID, self.on_request)
 
     def on_sync(self, can_id, data, timestamp):
-        self.synced = time.monotonic()
+        clock.syncs += 1
+        self.synced = clock()
         for d in self.drives.values():
             d.sync()
         self.noise = (self.noise * 5 + 3) % 16
@@ -334,7 +353,7 @@ class Stage:
         self.flags = data[0]
 
     def comes(self, what):
-        self.came.append((time.monotonic(), len(self.rows), what))
+        self.came.append((clock(), len(self.rows), what))
 
     def on_nmt(self, can_id, data, timestamp):
         self.comes(f"nmt {data.hex()}")
@@ -352,6 +371,8 @@ class Stage:
             what not in ("gap", "report") else None
         if what == "emcy":
             d.fail(int(args[1], 16))
+        elif what == "brake":
+            d.brake = int(args[1])
         elif what == "leave":
             d.state = DISABLED
         elif what in ("mute", "unmute"):
@@ -362,6 +383,8 @@ class Stage:
             setattr(d, what, int(args[1]))
         elif what in ("jam", "unjam"):
             d.jammed = what == "jam"
+        elif what == "push":
+            d.place += int(args[1])
         elif what == "lag":
             d.lag_1_s = float(args[1])
         elif what == "reboot":
@@ -390,7 +413,7 @@ class Stage:
         while True:
             ready, _, _ = select.select([self.net.sock, self.fifo], [], [],
                                         0.02)
-            now = time.monotonic()
+            now = clock()
             if self.net.sock in ready:
                 self.net.read()
             self.net.beat(now)
@@ -401,4 +424,8 @@ class Stage:
 
 
 if __name__ == "__main__":
-    Stage(sys.argv[1], sys.argv[2], [int(n) for n in sys.argv[3:]]).run()
+    words = sys.argv[1:]
+    if words[2] == "--every":
+        clock.every = float(words.pop(3))
+        del words[2]
+    Stage(*words[:2], [int(n) for n in words[2:]]).run()

@@ -15,6 +15,8 @@ import time
 
 import canopen
 
+import st
+
 NODE, SCAN_S, SLOW_S = 32, 0.01, 0.03
 STATES = ("?", "idle", "travel", "approach", "erode", "retract", "jump",
           "hold", "fault")
@@ -25,7 +27,8 @@ class Generator:
     """Sets what it is given SLOW_S later, all of it at once."""
 
     def __init__(self):
-        self.real = dict.fromkeys(VALUES, 0) | {"Negative": 0, "Iso": 0}
+        self.real = dict.fromkeys(VALUES, 0) | {"Negative": 0, "Iso": 0,
+                                                "Servo": 0}
         self.next, self.at, self.log = None, None, []
 
     def give(self, values, now):
@@ -50,7 +53,8 @@ class Plc:
             self.node.tpdo[n].add_callback(self.came)
         self.generator = Generator()
         self.offences, self.notes = [], []
-        self.set = self.in_force = self.fault = 0
+        self.block = st.Block(open("edmd.st").read(), "EdmdGenerator")
+        self.fault, self.servo = 0, 0
         self.given, self.scans = {}, {}
         self.bits = {"permit": 1}
         self.alive = 0
@@ -78,8 +82,9 @@ class Plc:
 
     def answer(self):
         tell = self.generator.real | self.told
-        self.send(2, Generator__InForce=self.in_force,
+        self.send(2, Generator__InForce=self.block["InForce"],
                   Generator__GeneratorFault=self.fault,
+                  Generator__ToldServo=tell["Servo"],
                   Generator__ToldBits=tell["Negative"] | tell["Iso"] << 1)
         self.send(3, **{"Generator__Told" + v: tell[v] for v in VALUES})
 
@@ -88,10 +93,10 @@ class Plc:
     def judge(self, number):
         """The values of the next number, and a status, may be on their way."""
         self.seen("other values under the same number",
-                  number and number == self.set and
+                  number and number == self.block["Given"] and
                   self.asked() != self.given)
         self.seen("sparks before it is in force",
-                  self.sparks() and number != self.in_force and
+                  self.sparks() and number != self.block["InForce"] and
                   not self.fault)
 
     def seen(self, what, is_so):
@@ -100,15 +105,18 @@ class Plc:
             self.offences.append((time.monotonic(), what))
 
     def program(self, now):
-        number = self.frames["Asked"]
+        b, number, asked = self.block, self.frames["Asked"], self.asked()
         self.judge(number)
-        if number == 0:
-            self.set = self.in_force = 0
-        elif number != self.set:
-            self.set, self.given = number, self.asked()
-            self.generator.give(self.given, now)
-        elif self.generator.next is None and not self.late:
-            self.in_force = number
+        was, reads = b["Given"], b["ReadServo"]
+        if reads:
+            self.servo = self.node.sdo[0x2002][5].raw
+        b.scan(Asked=number, HasServo=1, AskedServo=self.servo, ServoRead=reads,
+               Ready=self.generator.next is None and not self.late,
+               **{"Asked" + v: x for v, x in asked.items()})
+        if b["Given"] not in (was, 0):
+            self.given = asked
+            self.generator.give({v: b["Gen" + v]
+                                 for v in self.generator.real}, now)
 
     def scan(self):
         now = time.monotonic()
@@ -167,7 +175,7 @@ class Plc:
         return None, lambda: setattr(self, "mute", False)
 
     def resets(self):
-        self.set = self.in_force = 0
+        self.block["Given"] = self.block["InForce"] = 0
         self.generator.real = dict.fromkeys(self.generator.real, 0)
         self.generator.log.append((time.monotonic(),
                                    dict(self.generator.real)))

@@ -4,7 +4,7 @@
 . ./lib.sh
 ip link add dev vcan1 type vcan
 ip link set vcan1 up
-cp paper.tech plc_sets.py can_generator.py edmd.eds $R/
+cp paper.tech plc_sets.py st.py edmd.st can_generator.py edmd.eds $R/
 cd $R
 
 scenes() {	# NAME JOB SCENE ...
@@ -41,11 +41,30 @@ walk() {	# NAME EVERY WHO ...
 	cp walk-$name.* $J/
 }
 
+has_servo() { ctl generator | grep -q '^servo_v  *V  *can  *15  *15 '; }
+
+# A cut, and what the generator on CAN has in it.
+cut_can() {
+	edmd_start $R/edmd can.ini
+	jobs_start can.ini
+	$PYTHON can_generator.py vcan1 0 2> who.err & who=$!
+	ctl submit slow.ngc > cut-can.txt 2>&1
+	turns 100 has_servo
+	ctl generator >> cut-can.txt 2>&1
+	ctl stop >> cut-can.txt 2>&1
+	kill $who; wait $who
+	cat who.err >> cut-can.txt
+	daemons_end cut-can
+	rm -f /dev/shm/edmd.vm.*
+	cp cut-can.* $J/
+}
+
 J=$OLDPWD
 walk sets 9973 $PYTHON plc_sets.py vcan1 idle
 walk can 9973 $PYTHON can_generator.py vcan1 0
 walk stuck 9973 $PYTHON can_generator.py vcan1 64
 walk lines 1 true
+cut_can
 pull sim0 20 up		# the gap stays open
 scenes good paper.ngc good
 scenes ill slow.ngc late lies refuses silent resets

@@ -16,12 +16,23 @@ drives.py, no CANopen package.  TRAITS is JSON, node -> what is particular:
     refuse     {"605a:0": code}: that write is answered so
     most       {"60c2:1": 8}: a larger value is out of range
     off        it has no power at first
+    inputs     {"2": -3000, "1": [3000]}: bit 2 of 60FD is 1 where its axis truly is
+               at -3000 or below, bit 1 at 3000 or above; {"16": 1}: it is 1
+    no6        6502 says mode 6, and 6060 refuses it
+    ip         mode 7 in place of mode 8, without a buffer
+    home       it homes by itself in mode 6, with {"at": its true place; "stale":
+               bit 12 is 1 from the beginning; "late": SYNCs until it begins;
+               "leave": it counts anew only when it leaves the mode; "torque": it
+               refuses another mode under torque; "no10": without bit 10}
 
 COMMANDS is a FIFO, a line for each thing to do:
-    off N | on N | push N INCREMENTS | mode N M | bits N SET CLEAR | emcy N CODE
-    warn N CODE, an emergency without a fault | jam N | unjam N |
+    input N BIT 0 or 1, whatever its axis does | loses N, finds N, its second TPDO |
+    deaf N, it hears no SYNC | hears N | weak N, its supply breaks down | strong N |
+    slow N OBJECT SECONDS | invert N BIT | off N | on N | push N INCREMENTS | mode N M | bits N SET CLEAR | emcy N CODE
+    gap V LOUD: with more noise |
+    fails N, its next homing; warn N CODE [MAKER], an emergency without a fault, MAKER 10 digits | jam N | unjam N |
     clip N, bit 11 and it stands | free N | gap V | nmt BYTE BYTE | report FILE | quit
-A report has a row for each SYNC: its time, the generator's flags, and of each
+where FILE leaves the true places alone.  A report has a row for each SYNC: its time, the generator's flags, and of each
 drive its state, where the axis truly is, what the drive counts, and 6060.
 """
 import json
@@ -39,6 +50,9 @@ NO_OBJECT, NO_SUB = 0x06020000, 0x06090011
 READ_ONLY, LENGTH = 0x06010002, 0x06070010
 RANGE, NOT_NOW, UNMAPPABLE = 0x06090030, 0x08000022, 0x06040041
 TOGETHER, COMMAND = 0x06040043, 0x05040001
+
+NAME = b"strict drive"
+SAVE, NOT_STORED = 0x65766173, 0x08000020
 
 BOOTING, PREOP, OPERATIONAL, STOPPED = 0, 127, 5, 4
 
@@ -64,6 +78,17 @@ def dictionary(node, traits):
         (0x1005, 0): Entry(u32, 0x80),
         (0x1006, 0): Entry(u32, 0, high=1000000),
         (0x1007, 0): Entry(u32, 0, high=1000000),
+        (0x1008, 0): Entry(u32, 0, ro=True),        # a name: see NAME
+        (0x1010, 0): Entry(u8, 3, ro=True),
+        (0x1010, 1): Entry(u32, 1), (0x1010, 2): Entry(u32, 1),
+        (0x1010, 3): Entry(u32, 1),
+        (0x607c, 0): Entry(u32, 7),
+        (0x6098, 0): Entry(u8, 0, values=range(1, 38)),
+        (0x6099, 0): Entry(u8, 2, ro=True),
+        (0x6099, 1): Entry(u32, 1, low=1, high=10000000),
+        (0x6099, 2): Entry(u32, 1, low=1, high=10000000),
+        (0x609a, 0): Entry(u32, 1, low=1, high=1000000000),
+        (0x607e, 0): Entry(u8, 0, values=(0, 0x80)),
         (0x1016, 0): Entry(u8, 1, ro=True), (0x1016, 1): Entry(u32, 0),
         (0x1017, 0): Entry(u16, 0),
         (0x1018, 0): Entry(u8, 4, ro=True),
@@ -79,11 +104,18 @@ def dictionary(node, traits):
         (0x6065, 0): Entry(u32, 2000, low=1, high=1000000),
         (0x607a, 0): Entry(u32, 0),
         (0x6085, 0): Entry(u32, 100000, low=1000, high=100000000),
+        (0x60fd, 0): Entry(u32, 0, ro=True),
         (0x60c2, 0): Entry(u8, 2, ro=True),
         (0x60c2, 1): Entry(u8, 1, low=1, high=20),
         (0x60c2, 2): Entry(u8, 0xfd, ro=True),
         (0x6502, 0): Entry(u32, 0xa5, ro=True),
     }
+    if traits.get("ip"):
+        od |= {(0x60c0, 0): Entry(u16, 0, values=(0,)),
+               (0x60c1, 0): Entry(u8, 1, ro=True),
+               (0x60c1, 1): Entry(u32, 0),
+               (0x6060, 0): Entry(u8, 1, values=(1, 3, 6, 7)),
+               (0x6502, 0): Entry(u32, 0x65, ro=True)}
     identity = traits.get("identity", [0x1111, 0x2222, 1, node])
     for sub, value in enumerate(identity, 1):
         od[0x1018, sub] = Entry(u32, value, ro=True)
@@ -116,8 +148,11 @@ class Drive:
         self.count = self.true
         self.offset, self.times = 0, 0      # of the count; power-ons
         self.powered = False
+        self.loses = self.deaf = self.weak = False
         self.state = "off"
         self.slow = []                      # (when, frame) of late answers
+        self.forced, self.inverted = {}, 0  # inputs
+        self.loses = self.deaf = self.weak = False
         self.nmt = BOOTING
         if not traits.get("off"):
             self.power_on()
@@ -142,7 +177,10 @@ class Drive:
         self.target = self.sent = None
         self.mode, self.mode_at, self.before = 1, 0, 1
         self.force_set = self.force_clear = 0
-        self.jammed, self.enabling = False, 0
+        self.jammed, self.enabling, self.segments = False, 0, False
+        self.attained = self.traits.get("home", {}).get("stale", False)
+        self.homing, self.failed, self.fails = None, False, False
+        self.was4, self.renumber, self.waits = False, False, 0
         self.beat_at = self.heard_master = self.synced = None
         self.step = 0
 
@@ -161,6 +199,8 @@ class Drive:
             return 1, self.mode_shown()
         if key == (0x6041, 0):
             return 2, self.status()
+        if key == (0x60fd, 0):
+            return 4, self.inputs()
         if key == (0x6064, 0):
             return 4, self.count & 0xffffffff
         return self.od[key].size, self.od[key].value
@@ -182,8 +222,21 @@ class Drive:
                                             value not in e.values):
             raise Abort(RANGE)
         self.check(index, sub, value)
+        if index == 0x1010:             # reads as before: it saves on command
+            self.bus.stored.append((self.node, sub))
+            return
+        if key == (0x607e, 0) and value != e.value:
+            self.count = -self.count
+            self.offset = self.true - self.count
         e.value = value
         if key == (0x6060, 0):
+            if self.step:
+                self.offence("another mode while it moves")
+            if self.mode == 6 and value != 6 and self.renumber:
+                self.count_anew()
+            if value == 6 and self.control & 0x10:
+                self.offence("bit 4 before mode 6")
+            self.homing = None
             self.before = self.mode_shown()
             self.mode, self.mode_at = value, time.monotonic()
         if key == (0x1016, 1):
@@ -201,6 +254,10 @@ class Drive:
                 raise Abort(NOT_NOW)
         elif 0x1600 <= index < 0x1800 or 0x1a00 <= index < 0x1c00:
             self.check_mapping(index, sub, value)
+        elif index == 0x1010 and value != SAVE:
+            raise Abort(NOT_STORED)
+        elif index in (0x1010, 0x607e) and self.state == "enabled":
+            raise Abort(NOT_NOW)
         elif index == 0x1016:
             other, ms = value >> 16, value & 0xffff
             if other > 127 or value >> 24 or (ms and not other):
@@ -211,6 +268,15 @@ class Drive:
             raise Abort(RANGE)
         elif index == 0x1005 and value & 0x7ff != 0x80:
             raise Abort(RANGE)
+        elif index == 0x6060 and value == 6 and self.traits.get("no6"):
+            raise Abort(RANGE)              # whatever 6502 says
+        elif index == 0x6060 and value != self.mode and \
+                self.state == "enabled" and \
+                self.traits.get("home", {}).get("torque"):
+            raise Abort(NOT_NOW)
+        elif index in (0x6098, 0x6099, 0x609a, 0x607c) and \
+                self.state == "enabled":
+            raise Abort(NOT_NOW)
         elif index in (0x60c2, 0x605a) and self.state == "enabled":
             raise Abort(NOT_NOW)
 
@@ -248,11 +314,18 @@ class Drive:
     def on_sdo(self, data):
         what, (index, sub) = data[0] >> 5, struct.unpack_from("<HB", data, 1)
         if what == 4:
+            self.segments = False
             return
         answer = bytearray(8)
         answer[1:4] = data[1:4]
         try:
-            if what == 2:
+            if self.segments:           # it waits for them, or for an abort
+                raise Abort(COMMAND)
+            if what == 2 and index == 0x1008:
+                self.segments = True
+                answer[0] = 0x41
+                struct.pack_into("<I", answer, 4, len(NAME))
+            elif what == 2:
                 size, value = self.upload((index, sub))
                 answer[0] = 0x43 | (4 - size) << 2
                 struct.pack_into("<I", answer, 4, value)
@@ -302,8 +375,16 @@ class Drive:
             at += n
             if word >> 16 == 0x6040:
                 self.control = value
-            elif word >> 16 == 0x607a:
+            elif word >> 16 == (0x60c1 if self.traits.get("ip") else 0x607a):
                 self.target = value - (1 << 32) if value >> 31 else value
+
+    def inputs(self):
+        word = 0
+        for bit, at in self.traits.get("inputs", {}).items():
+            on = (self.true >= at[0] if isinstance(at, list) else
+                  at if at in (0, 1) else self.true <= at)
+            word |= self.forced.get(bit, on) << int(bit)
+        return word ^ self.inverted
 
     def mode_shown(self):
         if time.monotonic() - self.mode_at < self.traits.get("mode_lag", 0):
@@ -314,27 +395,42 @@ class Drive:
         word = {"not-ready": 0x0200, "disabled": 0x0250, "ready": 0x0231,
                 "on": 0x0233, "enabled": 0x0237, "stopping": 0x0217,
                 "held": 0x0217, "reacting": 0x021f, "fault": 0x0218}[self.state]
-        if self.state == "enabled" and self.mode_shown() == 8:
+        if self.state == "enabled" and (
+                self.mode_shown() == 8 or self.interpolates()):
             word |= 0x1000
+        if self.mode_shown() == 6:
+            still = self.step == 0 and self.homing in (None, "done", "failed")
+            word |= self.attained << 12 | self.failed << 13 | (
+                still and not self.traits.get("home", {}).get("no10")) << 10
         return (word | self.force_set) & ~self.force_clear
 
     def on_sync(self, now):
+        if self.deaf:
+            return
         self.synced = now
         if self.nmt != OPERATIONAL:
             return
-        if not self.get(0x1800, 1) >> 31:
+        for k in range(4):
+            if self.get(0x1800 + k, 1) >> 31 or self.get(0x1800 + k, 2) != 1 \
+                    or (k == 1 and self.loses):
+                continue
             data = b""
-            for i in range(1, self.get(0x1a00) + 1):
-                word = self.get(0x1a00, i)
+            for i in range(1, self.get(0x1a00 + k) + 1):
+                word = self.get(0x1a00 + k, i)
                 n = (word & 0xff) // 8
                 size, value = self.upload((word >> 16, word >> 8 & 0xff))
                 data += value.to_bytes(4, "little")[:n]
-            self.bus.send(self.get(0x1800, 1) & 0x7ff, data)
+            self.bus.send(self.get(0x1800 + k, 1) & 0x7ff, data)
         self.obey()
         self.move()
 
     def obey(self):
         control, rises = self.control, self.control & ~self.taken
+        if control & 0x10 and self.mode_shown() not in (6, 7):
+            self.offence("bit 4 without mode 6 or 7")
+        if rises & 0x10 and self.mode_shown() == 7 and \
+                self.target != self.count:
+            self.offence("it is to follow a target that is elsewhere")
         self.taken = control
         s = self.state
         if s == "fault":
@@ -356,6 +452,8 @@ class Drive:
                 self.state = "ready"
         elif control & 0xf == 7:
             self.state = {"ready": "on", "enabled": "on"}.get(s, s)
+        elif s == "on" and self.weak:
+            self.fail(0x3220)
         elif s in ("on", "held"):
             self.enabling += 1
             if self.enabling > 3:
@@ -363,8 +461,70 @@ class Drive:
             return
         self.enabling = 0
 
+    def interpolates(self):
+        return self.mode_shown() == 7 and self.taken & 0x10
+
+    def offence(self, what):
+        self.bus.offences.append((self.node, what))
+
+    def count_anew(self):
+        """Its count is the offset 607C where its home is."""
+        method = self.get(0x6098)
+        at = self.true if method in (35, 37) else self.traits["home"]["at"]
+        self.offset = at - self.get(0x607c)
+        self.count = self.true - self.offset
+        self.renumber = False
+
+    def home_found(self):
+        self.attained, self.homing = True, "done"
+        self.renumber = True
+        if not self.traits["home"].get("leave"):
+            self.count_anew()
+
+    def home_step(self):
+        """How far it goes until the next SYNC."""
+        h = self.traits.get("home", {})
+        four, halts = bool(self.control & 0x10), bool(self.control & 0x100)
+        rises, self.was4 = four and not self.was4, four
+        if rises:
+            self.homing, self.waits = "begins", h.get("late", 0)
+        if self.homing not in (None, "done", "failed") and (halts or not four):
+            self.homing = "stops"
+        here = self.get(0x6098) in (35, 37)
+        to = 0 if here else h.get("at", 0) - self.true
+        fast, slow = (max(1, self.get(0x6099, sub) // 100) for sub in (1, 2))
+        if self.homing == "begins":
+            self.waits -= 1
+            if self.waits < 0:
+                self.failed = self.fails
+                self.homing = "failed" if self.fails else "fast"
+                self.fails = False
+                # One that moves nothing may be so fast that nobody sees it.
+                self.attained = self.attained and here
+                if here and not self.failed:
+                    self.home_found()
+        elif self.jammed:
+            return 0
+        elif self.homing == "fast":
+            if abs(to) > fast:
+                return fast if to > 0 else -fast
+            self.homing = "back"
+            return to + (200 if to > 0 else -200)
+        elif self.homing == "back":
+            if to == 0:
+                self.home_found()
+            return max(-slow, min(slow, to))
+        elif self.homing == "stops":
+            if int(self.step / 2) == 0:
+                self.homing = None
+            return int(self.step / 2)
+        return 0
+
     def move(self):
-        if self.state == "enabled" and self.mode_shown() == 8 and \
+        if self.state == "enabled" and self.mode_shown() == 6:
+            self.step = self.home_step()
+        elif self.state == "enabled" and (
+                self.mode_shown() == 8 or self.interpolates()) and \
                 not self.jammed and self.target is not None and \
                 not self.force_clear & 0x1000:
             self.step = self.target - self.count
@@ -449,6 +609,7 @@ class Bus:
         self.sock.setblocking(False)
         self.sock.bind((interface,))
         self.aborts, self.rows, self.flags, self.gap_v = [], [], 0, 0.0
+        self.stored, self.offences = [], []
         self.noise, self.came = 0, []   # harm: when, after how many rows
         self.drives = {int(n): Drive(self, int(n), t)
                        for n, t in traits.items()}
@@ -489,7 +650,7 @@ class Bus:
         if self.gap_v:
             self.noise = (self.noise * 5 + 3) % 16
             self.send(GAP_ID, struct.pack("<H", int(self.gap_v * 100) +
-                                          self.noise))
+                                          self.noise * self.loud))
         self.rows.append((now, self.flags, [
             (d.state, d.true, d.count, d.mode if d.powered else 0)
             for d in self.drives.values()]))
@@ -498,15 +659,22 @@ class Bus:
         what, args = words[0], words[1:]
         if what == "gap":
             self.gap_v = float(args[0])
+            self.loud = int(args[1]) if args[1:] else 1
         elif what == "nmt":
             for d in self.drives.values():
                 if d.powered:
                     d.on_nmt(int(args[0], 16), int(args[1], 16))
             self.send(0, bytes(int(a, 16) for a in args))
+        elif what == "where":
+            with open(args[0] + ".new", "w") as f:
+                json.dump([d.true for d in self.drives.values()], f)
+            os.rename(args[0] + ".new", args[0])
         elif what == "report":
             with open(args[0] + ".new", "w") as f:
                 json.dump({"nodes": list(self.drives), "rows": self.rows,
-                           "aborts": self.aborts, "came": self.came}, f)
+                           "aborts": self.aborts, "came": self.came,
+                           "stored": self.stored,
+                           "offences": self.offences}, f)
             os.rename(args[0] + ".new", args[0])
             self.rows, self.aborts, self.came = [], [], []
         elif what == "quit":
@@ -530,8 +698,23 @@ class Bus:
         elif what == "emcy":
             d.fail(int(args[0], 16))
         elif what == "warn":
-            self.send(0x80 + d.node, struct.pack("<HBxxxxx",
-                                                 int(args[0], 16), 4))
+            self.send(0x80 + d.node, struct.pack(
+                "<HB5s", int(args[0], 16), 4,
+                bytes.fromhex(args[1] if args[1:] else "")))
+        elif what == "input":
+            d.forced[args[0]] = int(args[1])
+        elif what in ("deaf", "hears"):
+            d.deaf = what == "deaf"
+        elif what in ("weak", "strong"):
+            d.weak = what == "weak"
+        elif what == "slow":
+            d.traits["slow"] = {args[0]: float(args[1])}
+        elif what == "invert":
+            d.inverted ^= 1 << int(args[0])
+        elif what in ("loses", "finds"):
+            d.loses = what == "loses"
+        elif what == "fails":
+            d.fails = True
         elif what in ("jam", "unjam"):
             d.jammed = what == "jam"
         elif what in ("clip", "free"):

@@ -65,6 +65,50 @@ END
 systemctl daemon-reload
 systemctl start edm-dds.service
 
+# edm-notify as its unit has it, but for a Python that has its libraries, wherever
+# this project lies, /root and /tmp too: off without a file; then a fault is told,
+# and the next one after it was killed.
+called() { [ "$(grep -c '"kind": "fault"' notify-called)" -ge $1 ]; }
+begun() { [ "$(grep -c 'calls here' notify-called)" -ge $1 ]; }
+notify() { systemctl show -P $1 edm-notify.service; }
+{
+echo "enabled $(systemctl is-enabled edm-notify.service)"
+mkdir -p /run/systemd/system/edm-notify.service.d
+cat > /run/systemd/system/edm-notify.service.d/python.conf <<END
+[Service]
+ExecStart=
+ExecStart=$PYTHON -m edm.notify --config %d/notify.ini
+Environment=PYTHONPATH=${PYTHON%/.venv/*}/clients/python
+ProtectHome=tmpfs
+BindReadOnlyPaths=${PYTHON%/.venv/*}
+StandardOutput=append:$PWD/notify-called
+END
+systemctl daemon-reload
+systemctl start edm-notify.service
+echo "without-file $(notify ConditionResult) $(notify ActiveState)"
+ctl keys add notify viewer
+mv notify.key /etc/edmd/
+printf '[notify]\nmachine = vm\n[to.here]\nurl = command:/bin/cat\n' \
+	> /etc/edmd/notify.ini
+chmod 600 /etc/edmd/notify.*
+: > notify-called
+systemctl start edm-notify.service
+echo "active $(notify ActiveState)/$(notify SubState)"
+ctl estop
+turns 600 called 1; echo "called $?"
+pid=$(notify MainPID)
+echo "user $(ps -o user= -p $pid)"
+kill -9 $pid
+turns 600 begun 2; echo "begun-again $?"
+ctl reset
+sleep 3
+ctl estop
+turns 600 called 2; echo "called-again $?"
+ctl reset
+systemctl stop edm-notify.service
+echo "stopped $(notify Result)"
+} > notify 2>&1
+
 {
 status_is 'edmd *ok' && ctl submit slow.ngc
 status_is 'state *approach'
@@ -100,5 +144,5 @@ systemctl stop edmd.service
 echo "stop $? $(unit Result)"
 } > watchdog 2>&1
 . ./systemd_can.sh
-journalctl -u edmd -u edmd-jobs --no-pager -o short-monotonic > journal
+journalctl -u edmd -u edmd-jobs -u edm-notify --no-pager -o short-monotonic > journal
 true

@@ -28,7 +28,7 @@ function Now(): JSX.Element {
 			{others.length > 0 && <><dt>{t("alarms.others")}</dt><dd>{list(others.map((f) => faultWords(f).what))}</dd></>}
 			{s.job && <><dt>{t("alarms.where")}</dt><dd>{t("alarms.inline", { job: s.jobName, line: s.line, mm: number(s.place, 3) })}</dd></>}</dl>
 		<div class="keys"><Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key>
-			<PressKey id="start" why={whyNot("start")} onPress={() => void act("start")}>{t("resume")}</PressKey></div>
+			<PressKey id="start" why={whyNot("start")} onPress={() => void act("start", { job: link.state.job })}>{t("resume")}</PressKey></div>
 		<p class="note">{t("alarms.resetgo")}</p>
 	</Card>;
 }

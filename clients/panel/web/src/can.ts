@@ -11,7 +11,7 @@ export type Act = "start" | "hold" | "retract" | "estop" | "reset" | "end" | "jo
 
 function word(act: Act): Word | "" {
 	const s = link.state;
-	const runs = RUNS.has(s.state), loaded = s.loaded || s.jobState === "held";
+	const runs = isRunning(), loaded = s.loaded || s.jobState === "held";
 	switch (act) {
 	case "estop": return "";
 	case "send": return s.jobs ? "" : "why.nojobs";
@@ -47,6 +47,7 @@ export function whyNot(act: Act): string {
 	return w ? t(w) : "";
 }
 
+/** Does it move, or begin to as soon as its drives have power? */
 export function isRunning(): boolean {
-	return RUNS.has(link.state.state);
+	return RUNS.has(link.state.state) || link.state.stand === "power";
 }

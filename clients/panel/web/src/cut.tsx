@@ -193,7 +193,7 @@ function Foot(p: { open: (what: string) => void }): JSX.Element {
 			<Key id="retract" why={whyNot("retract")} onPress={() => p.open("retract")}>{t("retract")}</Key>
 			<Middle open={p.open} />
 			<PressKey id="start" class={isRunning() || s.asks ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
-				onPress={() => void act("start")}>{t(held ? "resume" : "start")}</PressKey>
+				onPress={() => void act("start", { job: s.job })}>{t(held ? "resume" : "start")}</PressKey>
 		</div>
 	</footer></div>;
 }

@@ -5,7 +5,7 @@
 import type { JSX } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { whyNot } from "./can";
-import { clock, duration, moment, number } from "./format";
+import { clock, duration, moment, number, parse } from "./format";
 import { table } from "./history";
 import type { Came, Fault, Used } from "./history";
 import { link } from "./link";
@@ -18,8 +18,8 @@ import { save, say, useAsk, usePages } from "./use";
 import { faultWords, fieldWord, jobWord, list, said, t } from "./words";
 
 interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
-interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string; line: string }
-interface Job { electrodes?: Used[]; n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; forecast_s?: number | null; forecast_why?: string; jumps: number; retracts: number; shorts: number; erode_s?: number | null; arcs?: number | null; energy_j?: number | null; conditions?: Came[]; faults?: Fault[]; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
+interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string; line: string; set: Record<string, string> }
+interface Job { setting?: string; electrodes?: Used[]; n: number; job: string; name: string; state: string; hold: boolean; lines: number; submitted_us: number; begun_us: number; ended_us: number; reason: string; path_mm: number; length_mm: number; depth_mm: number; job_s: number; forecast_s?: number | null; forecast_why?: string; jumps: number; retracts: number; shorts: number; erode_s?: number | null; arcs?: number | null; energy_j?: number | null; conditions?: Came[]; faults?: Fault[]; changes?: { utime: number; place_mm: number; what: string; was: number | null; now: number | null }[] }
 
 const EDITOR_MAX = 2 << 20, FILE_MAX = 64 << 20;
 
@@ -47,6 +47,12 @@ function broken(e: unknown): string {
 	return e instanceof Error && e.message === "connection" ? t("no.connection") : String(e);
 }
 
+/** What is set for a job: docs/3b.md has the words. */
+function setting(d: Draft): string {
+	const word = (k: string, v: string) => v === "" ? [] : [`${k}=${Number.isNaN(parse(v)) ? v : parse(v)}`];
+	return encodeURIComponent(Object.entries(d.set).flatMap(([k, v]) => word(k, v.trim())).join(" "));
+}
+
 let turn = 0;
 
 async function check(): Promise<void> {
@@ -54,7 +60,7 @@ async function check(): Promise<void> {
 	if (!d) return;
 	put({ ...d, busy: t("jobs.checking") });
 	try {
-		const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(d.name)}`, d.file ?? new Blob([d.text]));
+		const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(d.name)}&set=${setting(d)}`, d.file ?? new Blob([d.text]));
 		if (my === turn && draft) put({ ...draft, busy: "", checked: c });
 	} catch (e) {
 		if (my === turn && draft) put({ ...draft, busy: "", checked: { ok: false, line: 0, column: 0, found: broken(e), wanted: t("again") } });
@@ -65,13 +71,13 @@ async function check(): Promise<void> {
 export async function takeFile(f: File): Promise<void> {
 	if (f.size > FILE_MAX) { say(t("jobs.toolong"), true); return; }
 	const short = f.size <= EDITOR_MAX;
-	put({ name: fitName(f.name), text: short ? ownLines(await f.text()) : "", file: short ? null : f, checked: null, busy: "", line: "" });
+	put({ name: fitName(f.name), text: short ? ownLines(await f.text()) : "", file: short ? null : f, checked: null, busy: "", line: "", set: {} });
 	await check();
 }
 
 /** G code that a form made: checked, then sent. */
 export async function sendText(name: string, text: string, start: boolean): Promise<boolean> {
-	const d: Draft = { name, text, file: null, checked: null, busy: "", line: "" };
+	const d: Draft = { name, text, file: null, checked: null, busy: "", line: "", set: {} };
 	try {
 		const c = await link.post<Checked>(`/api/check?name=${encodeURIComponent(name)}`, new Blob([text]));
 		if (c.ok) return await send(d, start);
@@ -88,7 +94,7 @@ async function send(d: Draft, start: boolean): Promise<boolean> {
 	const progress = (share: number) => { if (draft) put({ ...draft, busy: t("jobs.sending", { share: Math.round(share * 100) }) }); };
 	try {
 		// Held first, so that what starts it is the press of a person.
-		const a = await link.post<Sent>(`/api/jobs?hold=1&name=${encodeURIComponent(d.name)}&line=${Number(d.line) || 0}`, d.file ?? new Blob([d.text]), progress);
+		const a = await link.post<Sent>(`/api/jobs?hold=1&name=${encodeURIComponent(d.name)}&line=${Number(d.line) || 0}&set=${setting(d)}`, d.file ?? new Blob([d.text]), progress);
 		if (a.code !== 0) { say(said(a.reason ?? t("also", { one: a.found ?? "", other: a.wanted ?? "" })), true); if (draft) put({ ...draft, busy: "" }); return false; }
 		say(d.line ? a.reason ?? "" : t("jobs.sent", { name: d.name }));
 		if (start) await begin(a.job as string);
@@ -130,6 +136,18 @@ function Editor(p: { draft: Draft; error: Checked | null }): JSX.Element {
 			onInput={(e) => { turn++; put({ ...p.draft, text: e.currentTarget.value, checked: null, busy: "" }); }} /></div>;
 }
 
+const SETTINGS = [["taper", "\u00b0"], ["wire-offset", "mm"], ["scale", ""], ["turn", "\u00b0"], ["plane", "mm"], ["second-plane", "mm"]] as const;
+const MIRRORS = ["none", "x", "y", "exchange"] as const;
+
+/** What the program has no words for: of a wire. */
+function Setting(p: { draft: Draft }): JSX.Element {
+	const put1 = (k: string, v: string) => { turn++; put({ ...p.draft, checked: null, busy: "", set: { ...p.draft.set, [k]: v } }); };
+	return <details id="setting" open={Object.values(p.draft.set).some((v) => v !== "")}><summary>{t("jobs.set")}</summary>
+		<div class="keys wrap">{SETTINGS.map(([k, unit]) => <NumberField id={`set-${k}`} label={t(`jobs.set.${k}`)} unit={unit} value={p.draft.set[k] ?? ""} onInput={(v) => put1(k, v)} />)}
+			<Choice label={t("jobs.set.mirror")} value={p.draft.set["mirror"] || "none"} onChange={(v) => put1("mirror", v === "none" ? "" : v)} of={MIRRORS.map((m) => ({ value: m, text: t(`jobs.mirror.${m}`) }))} /></div>
+	</details>;
+}
+
 function New(): JSX.Element {
 	const d = useDraft(), input = useRef<HTMLInputElement>(null);
 	const choose = <><input ref={input} id="file" type="file" class="hidden" tabIndex={-1} aria-label={t("jobs.choose")} onChange={(e) => {
@@ -156,6 +174,7 @@ function New(): JSX.Element {
 			{!d.busy && c?.ok && <p class="good">{t("jobs.ok", { lines: c.lines ?? 0, mm: number(c.length ?? 0, 2) })} {t("jobs.sum", { cut: number(c.cut ?? 0, 2), rapid: number(c.rapid ?? 0, 2) })}</p>}
 			{!d.busy && c && !c.ok && <div class="refusal"><b>{c.line > 0 ? t("jobs.errorat", { line: c.line, column: c.column }) : c.where}</b><p>{c.found}</p><p><i>{t("pair", { what: t("jobs.accepted"), is: "" })}</i> {c.wanted}</p></div>}
 		</div>
+		{link.hello?.process === 1 && <Setting draft={d} />}
 		<div class="keys end"><NumberField id="fromline" label={t("jobs.line")} value={d.line} onInput={(line) => put({ ...d, line })} />
 			<Key id="send" why={why || line} onPress={() => void send(d, false).then((ok) => { if (ok) put(null); })}>{t("jobs.send")}</Key>
 			<PressKey id="sendstart" class="primary" why={why || line || (d.line ? t("jobs.line.look") : link.state.loaded ? t("no.loaded") : "")} onPress={() => void send(d, true).then((ok) => { if (ok) put(null); })}>{t("jobs.sendstart")}</PressKey></div>
@@ -187,7 +206,7 @@ function Details(p: { id: string; name: string; onClose: () => void }): JSX.Elem
 	const [j] = useAsk<Job>("show", { job: p.id });
 	const [reads, read] = useState(false);
 	return <Sheet title={t("jobs.details", { name: p.name })} onClose={p.onClose} wide>{j && <>
-		<dl class="facts"><dt>{t("jobs.state")}</dt><dd>{jobWord(j.state)}</dd>{j.reason && <><dt>{t("jobs.reason")}</dt><dd>{said(j.reason)}</dd></>}
+		<dl class="facts"><dt>{t("jobs.state")}</dt><dd>{jobWord(j.state)}</dd>{j.setting && <><dt>{t("jobs.set")}</dt><dd>{j.setting}</dd></>}{j.reason && <><dt>{t("jobs.reason")}</dt><dd>{said(j.reason)}</dd></>}
 			<dt>{t("jobs.time")}</dt><dd>{duration(j.job_s)}</dd><dt>{t("jobs.length")}</dt><dd>{number(j.path_mm ?? 0, 3)} {t("of")} {number(j.length_mm ?? 0, 3)} mm</dd>
 			{link.hello?.process !== 1 && <><dt>{t("jobs.depth")}</dt><dd>{number(j.depth_mm ?? 0, 3)} mm</dd><dt>{t("cut.jumps")}</dt><dd>{j.jumps ?? 0}</dd></>}<dt>{t("cut.retracts")}</dt><dd>{j.retracts ?? 0}</dd><dt>{t("cut.shorts")}</dt><dd>{j.shorts ?? 0}</dd>
 			<dt>{t("jobs.arcs")}</dt><dd>{j.arcs ?? "\u2013"}</dd><dt>{t("jobs.energy")}</dt><dd>{energy(j.energy_j)}</dd></dl>

@@ -33,7 +33,8 @@ export function Key(p: KeyProps): JSX.Element {
 	</button>;
 }
 
-/** Acts when it was pressed for a second, by finger, mouse or keyboard. */
+/** Acts when it was pressed for a second, by finger, mouse or keyboard.  A press is for
+ *  the job that was there when it began: another is not begun by it. */
 export function PressKey(p: KeyProps): JSX.Element {
 	const [since, set] = useState(0);
 	const timer = useRef<number>(0);
@@ -58,7 +59,7 @@ export function PressKey(p: KeyProps): JSX.Element {
 	useEffect(() => {
 		window.addEventListener("blur", end);
 		return () => { window.removeEventListener("blur", end); end(); };
-	}, []);
+	}, [link.state.job]);
 	const key = (e: KeyboardEvent, go: () => void) => {
 		if (e.key !== "Enter" && e.key !== " ") return;
 		e.preventDefault();
@@ -143,6 +144,9 @@ export function Toasts(p: { over?: boolean }): JSX.Element | null {
 
 export function Sheet(p: { title: string; onClose: () => void; children: ComponentChildren; wide?: boolean }): JSX.Element {
 	const ref = useRef<HTMLDialogElement>(null);
+	// A press that ends elsewhere than it began, as where a message comes under it,
+	// is a click on the whole sheet.
+	const beside = useRef(false);
 	useEffect(() => {
 		const d = ref.current;
 		if (d && !d.open) d.showModal();
@@ -150,7 +154,8 @@ export function Sheet(p: { title: string; onClose: () => void; children: Compone
 		return () => { sheets(-1); d?.close(); };
 	}, []);
 	return <dialog ref={ref} class={`sheet ${p.wide ? "wide" : ""}`} aria-label={p.title}
-		onClick={(e) => { if (e.target === ref.current) p.onClose(); }}
+		onPointerDown={(e) => { beside.current = e.target === ref.current; }}
+		onClick={(e) => { if (beside.current && e.target === ref.current) p.onClose(); }}
 		onCancel={(e) => { e.preventDefault(); p.onClose(); }}>
 		<header><h2>{p.title}</h2><Key class="small quiet" onPress={p.onClose}>{t("close")}</Key></header>
 		<div class="sheet-body">{p.children}</div>

@@ -11,7 +11,7 @@ import { LOOK_MS, OffsetCard, WORKS, WorkChoice, useWork, type Row as OffsetRow 
 import { Card, Choice, HoldKey, Key, NumberField, PressKey, act } from "./parts";
 import { beginPress } from "./press";
 import { PROBES, isWhole, type Probe, type ProbeId, type Values } from "./probes";
-import { say, useAsk } from "./use";
+import { say, useAsk, useDraft } from "./use";
 import { jobWord, said, t, type Word } from "./words";
 
 const STEPS = ["0.001", "0.01", "0.1", "1", "10"] as const;
@@ -149,8 +149,8 @@ function hasAxis(name: string): boolean {
 }
 
 function ProbeForm(p: { probe: Probe }): JSX.Element {
-	const [v, set] = useState<Values>(() => Object.fromEntries(p.probe.asks.map((a) => [a.key, a.preset])));
-	const [work, into] = useState<string>("G54"), [felt, feel] = useState<Felt | null>(null);
+	const [v, set] = useDraft<Values>(`probe.${p.probe.id}`, Object.fromEntries(p.probe.asks.map((a) => [a.key, a.preset])));
+	const [work, into] = useDraft<string>("probe.work", "G54"), [felt, feel] = useState<Felt | null>(null);
 	const own = !!p.probe.electrode, target = own ? `T${link.state.electrode}` : work;
 	const [now, look] = useBefore(target, own, p.probe.shows(v)), state = useOver(felt?.job ?? "", look);
 	const whole = isWhole(p.probe, v), words = whole ? [target, ...p.probe.words(v)] : [];
@@ -172,7 +172,7 @@ function ProbeForm(p: { probe: Probe }): JSX.Element {
 }
 
 function ProbeCard(): JSX.Element {
-	const [at, set] = useState<ProbeId>("edge");
+	const [at, set] = useDraft<ProbeId>("probe", "edge");
 	const probe = PROBES.find((x) => x.id === at) as Probe;
 	return <Card title={t("setup.probe")} class="probing">
 		<Choice class="wrap" label={t("setup.probe")} value={at} onChange={set} of={PROBES.filter((x) => !x.electrode || hasAxis("Z")).map((x) => ({ value: x.id, text: t(`probe.${x.id}`) }))} />
@@ -184,7 +184,7 @@ const LAST_MAX = 6;
 let lastLines: string[] = [];
 
 function MdiCard(): JSX.Element {
-	const [line, set] = useState(""), [ran, run] = useState({ job: "", line: "" });
+	const [line, set] = useDraft("mdi", ""), [ran, run] = useDraft("mdi.ran", { job: "", line: "" });
 	const state = useOver(ran.job, () => undefined), text = line.trim();
 	const why = !text ? t("mdi.none") : link.state.loaded ? t("no.loaded") : whyNot("jog") || whyNot("send");
 	const go = async () => {

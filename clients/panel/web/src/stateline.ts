@@ -3,6 +3,7 @@
 // One line that says how it is: the state, why it waits, what to do.
 import { number } from "./format";
 import { link } from "./link";
+import { isRunning } from "./can";
 import { electrodeKnown, lineKnown } from "./lines";
 import { faultWords, fieldWord, isWord, list, stateWord, t } from "./words";
 
@@ -38,8 +39,7 @@ function idle(): string {
 }
 
 function held(): StateLine {
-	const s = link.state;
-	const ready = s.jobState === "ready" || s.far === 0;
+	const s = link.state, ready = s.stand === "ready";
 	return {
 		title: ready ? t("state.ready") : stateWord("hold"), tone: "warn", shape: "bars",
 		why: ready ? t("why.ready", { job: s.jobName || s.job }) : stands() || t("why.hold"),
@@ -90,9 +90,9 @@ function machineLine(): StateLine {
 	if (s.state === "idle" && storeWhy())
 		return { title: stateWord("idle"), why: t("why.store", { why: storeWhy() }), tone: "warn", shape: "ring" };
 	if (s.state === "idle") return { title: stateWord("idle"), why: idle(), tone: "calm", shape: "ring" };
-	if (s.state === "hold") return held();
+	if (s.state === "hold" && !isRunning()) return held();
 	const word = `why.${s.state}`;
-	if (s.stand) return { title: stateWord(s.state), tone: "warn", shape: "bars", why: stands() };
+	if (s.stand) return { title: t("state.waits"), tone: "warn", shape: "bars", why: stands() };
 	return {
 		title: stateWord(s.state), tone: "busy", shape: s.state === "erode" ? "play" : "square",
 		why: isWord(word) ? t(word, { line: s.line, mm: number(s.values.jump_mm ?? 0, 1) }) : "",

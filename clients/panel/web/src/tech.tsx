@@ -9,7 +9,7 @@ import { link, type Field } from "./link";
 import { whyNot } from "./can";
 import { moment } from "./format";
 import { Card, Key, PressKey, act } from "./parts";
-import { save, useAsk } from "./use";
+import { save, useAsk, useDraft } from "./use";
 import { unitWord } from "./values";
 import { fieldWord, list, t } from "./words";
 
@@ -73,7 +73,7 @@ function Versions(p: { file: string; again: () => void }): JSX.Element | null {
 
 export function Tech(): JSX.Element {
 	const [tech, refused, again] = useAsk<Tech>("tech");
-	const [edits, setEdits] = useState<Edits>({});
+	const [edits, setEdits] = useDraft<Edits>("tech", {});
 	const all = link.hello?.fields ?? [], table = tech?.table;
 	if (refused) return <div class="column"><p class="note">{refused}</p></div>;
 	if (!tech) return <div class="column" />;

@@ -11,6 +11,15 @@ export function useLink(): typeof link {
 	return link;
 }
 
+const drafts = new Map<string, unknown>();
+
+/** A state that is there again when its page is, by its name: what somebody has
+ *  begun to write must not be lost by looking at another page. */
+export function useDraft<T>(name: string, first: T): [T, (to: T) => void] {
+	const [is, set] = useState<T>(() => drafts.has(name) ? drafts.get(name) as T : first);
+	return [is, (to) => { drafts.set(name, to); set(() => to); }];
+}
+
 /** Asks once, and again every `everyMs`; null until it is answered. */
 export function useAsk<T>(what: string, more: Record<string, unknown> = {},
 	everyMs = 0): [T | null, string, () => void] {

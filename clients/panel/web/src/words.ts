@@ -29,7 +29,7 @@ export const en = {
 	"state.erode": "Cutting", "state.retract": "Retract", "state.jump": "Jump",
 	"state.hold": "Held", "state.fault": "Fault", "state.jog": "Jog",
 	"state.home": "Homing", "state.probe": "Probing", "state.unknown": "No signal",
-	"state.ready": "Ready", "state.interrupted": "Interrupted",
+	"state.ready": "Ready", "state.waits": "Waits", "state.interrupted": "Interrupted",
 
 	"why.idle": "No job is loaded. Drop a program anywhere to begin.",
 	"why.idle.queue": "Jobs wait in the queue. Press Start for 1 s to begin the next one.",
@@ -111,6 +111,8 @@ export const en = {
 	"jobs.drop": "Drop a program anywhere on this page", "jobs.choose": "Choose a file",
 	"jobs.new": "New program", "jobs.queue": "Queue", "jobs.history": "History",
 	"jobs.line": "Begin at line", "jobs.line.wanted": "A line of the program: 1, 2, 3 \u2026", "jobs.line.look": "Send it first, and look which way it will go in.",
+	"jobs.set": "Set for this job", "jobs.set.taper": "Taper, + to the left", "jobs.set.wire-offset": "Wire offset, + to the left", "jobs.set.scale": "Scale", "jobs.set.turn": "Turn", "jobs.set.plane": "Plane of X Y", "jobs.set.second-plane": "Plane of U V",
+	"jobs.set.mirror": "Mirror image", "jobs.mirror.none": "no image", "jobs.mirror.x": "of X", "jobs.mirror.y": "of Y", "jobs.mirror.exchange": "X for Y",
 	"jobs.check": "Check", "jobs.checking": "Checking\u2026", "jobs.send": "Send",
 	"jobs.sendstart": "Send and start", "jobs.ok": "Understood: {lines} lines, {mm} mm of path.",
 	"jobs.errorat": "Line {line}, column {column}", "jobs.toerror": "Go to line {line}",

@@ -22,7 +22,7 @@ export const zh: Record<Word, string> = {
 	"state.idle": "空闲", "state.travel": "定位", "state.approach": "趋近", "state.erode": "加工",
 	"state.retract": "回退", "state.jump": "抬刀", "state.hold": "保持", "state.fault": "故障",
 	"state.jog": "点动", "state.home": "回零", "state.probe": "测量", "state.unknown": "无信号",
-	"state.ready": "就绪", "state.interrupted": "中断",
+	"state.ready": "就绪", "state.waits": "等待", "state.interrupted": "中断",
 
 	"why.idle": "没有载入任务。把程序拖到页面任意处即可开始。",
 	"why.idle.queue": "队列中有任务等待。按住启动 1 秒开始下一个。",
@@ -98,6 +98,8 @@ export const zh: Record<Word, string> = {
 	"jobs.drop": "把程序拖到页面任意处", "jobs.choose": "选择文件", "jobs.new": "新程序",
 	"jobs.queue": "队列", "jobs.history": "历史", "jobs.check": "检查", "jobs.checking": "正在检查…",
 	"jobs.line": "从第几行开始", "jobs.line.wanted": "程序的行号：1、2、3……", "jobs.line.look": "请先发送，并查看它从哪条路径进入。",
+	"jobs.set": "本任务的设定", "jobs.set.taper": "锥度，正值向左", "jobs.set.wire-offset": "丝偏移，正值向左", "jobs.set.scale": "缩放", "jobs.set.turn": "旋转", "jobs.set.plane": "XY 平面高度", "jobs.set.second-plane": "UV 平面高度",
+	"jobs.set.mirror": "镜像", "jobs.mirror.none": "无镜像", "jobs.mirror.x": "X 镜像", "jobs.mirror.y": "Y 镜像", "jobs.mirror.exchange": "XY 互换",
 	"jobs.send": "发送", "jobs.sendstart": "发送并启动", "jobs.ok": "程序可用：{lines} 行，路径 {mm} mm。",
 	"jobs.errorat": "第 {line} 行第 {column} 列", "jobs.toerror": "到第 {line} 行", "jobs.accepted": "可接受的写法",
 	"jobs.name": "名称", "jobs.state": "状态", "jobs.time": "用时", "jobs.depth": "深度", "jobs.ended": "结束于",

@@ -65,7 +65,6 @@ struct interp_build_word {
 	double feed_mm_s;		/* > 0; ignored for a rapid; along X Y
 					 * Z; if none of these moves, U V; else
 					 * A B C (degrees) */
-	double least_s;			/* a line takes no less; 0: it may */
 	bool rapid;
 	uint8_t ends;			/* INTERP_SEG_PROBE, _HALF or _LIMIT; 0:
 					 * it ends at its end */

@@ -23,6 +23,7 @@
 #include "interp/mcode_arg.h"
 #include "interp/tech_table.h"
 #include "interp/job_text.h"
+#include "interp/setting.h"
 #include "interp/wire.h"
 
 #define INTERP_NC_DEPTH_MAX	8		/* M98 inside M98 */
@@ -88,6 +89,8 @@ struct interp_nc_options {
 	double work_turn_deg[INTERP_NC_NWORK];	/* about its origin, from X
 						 * toward Y */
 	const struct interp_wire *wire;	/* lent; NULL: no guides, no corners */
+	struct interp_setting set;	/* its taper holds under an offset; the
+					 * rest is refused */
 	double offset_mm[INTERP_NOFFSETS];	/* D and H; 0: not filled */
 	const struct interp_kinematics *kinematics;	/* lent; NULL: no
 							 * G43.4 */

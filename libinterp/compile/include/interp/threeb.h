@@ -20,6 +20,7 @@
 #include "interp/build.h"
 #include "interp/emit.h"
 #include "interp/job_text.h"
+#include "interp/setting.h"
 
 #define INTERP_THREEB_MAX	999999999	/* units in a field */
 
@@ -40,11 +41,13 @@ struct interp_threeb_options {
 					 * choice: nothing is left uncut */
 	bool fourb;			/* 4B records; experimental */
 	double offset_um;		/* 4B: wire radius and gap, >= 0 */
+	struct interp_setting set;
 };
 
 /* What a reader of records needs beside. */
 struct interp_threeb_read {
 	const struct interp_machine *machine;
+	const struct interp_wire *wire;	/* NULL: no guides, no corners */
 	const struct interp_threeb_options *options;
 	double feed_mm_s;		/* of every record, for there is no F;
 					 * 0: the fastest X and Y both go */

@@ -61,16 +61,6 @@
 #define INTERP_BEND_ACROSS	0.8
 /* Of an axis beside the path. */
 #define INTERP_BESIDE_ACROSS	0.6
-/* The same of its jerk: what the change of a bend may take, if that is no
- * corner.  The rest is for going along. */
-#define INTERP_BESIDE_JERK_ROUND	0.5
-
-/*
- * Beside lines, the bend of an axis leaves at least so much of the acceleration
- * along the path.  One that would need more is followed slower.  More of it
- * makes short moves quicker, such as jumps, and long ones slower.
- */
-#define INTERP_LEAST_ALONG	0.525
 
 /*
  * The same of its jerk, which has three parts: of the bend itself, v^3 / r^2;

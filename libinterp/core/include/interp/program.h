@@ -52,7 +52,7 @@
 #define INTERP_FAR_BESIDE	1e4
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	17
+#define INTERP_PROGRAM_VERSION	18
 
 /*
  * How three and more axes make a line when they move one at a time.
@@ -82,7 +82,7 @@ enum interp_kind {
 	INTERP_DWELL,			/* arg: milliseconds */
 	INTERP_STOP,			/* M0: hold until resumed */
 	INTERP_OPTIONAL_STOP,		/* M1 */
-	INTERP_AUX,			/* arg: enum interp_aux */
+	INTERP_AUX,			/* arg: INTERP_AUX_OF() and _WAS() */
 	INTERP_MCODE,			/* the PLC's; arg: interp/mcode_arg.h */
 	INTERP_ELECTRODE,		/* this one cuts from here on; arg: its
 					 * number, and INTERP_ELECTRODE_STOP */
@@ -113,6 +113,11 @@ enum interp_aux {
 	INTERP_NAUX
 };
 
+/* Which output; and of M3, M4 and M5 the M3 or M4 before it, which a way back
+ * over it comes to; 0: none. */
+#define INTERP_AUX_OF(arg)	((arg) & 0xffu)
+#define INTERP_AUX_WAS(arg)	((arg) >> 8)
+
 #define INTERP_SEG_RAPID	0x01	/* G0: positioned, not eroded */
 
 /* Straight lines that end where the machine says, and not at their end node.
@@ -133,10 +138,6 @@ enum interp_aux {
 
 /* Behind M5: written as a cut, and positioned. */
 #define INTERP_SEG_OFF		0x40
-
-/* A part of a known way: its feed_max_mm_s is what its axes can follow there,
- * and its ends are on the way.  What lines near to it show is not better. */
-#define INTERP_SEG_KNOWN	0x80
 
 /* Any of these: nothing is cut on it. */
 #define INTERP_SEG_UNCUT	(INTERP_SEG_RAPID | INTERP_SEG_SENSED | \
@@ -295,13 +296,14 @@ enum interp_escape_mode {
 };
 
 /* Where a program counts from, from segment `seg` to that of the next entry.
- * Turned back by turn_deg about machine zero, a machine place is mm more than
- * the place that is programmed.  It has the work offset, what the program
- * shifts it by, and the electrode.  Only for those who tell people: the cycle
- * does not look at it. */
+ * Turned back by turn_deg about machine zero, and mirrored, a machine place is
+ * mm more than the place that is programmed, times the scale of a figure.  It
+ * has the work offset, what the program shifts it by, and the electrode.  Only
+ * for those who tell people: the cycle does not look at it. */
 struct interp_origin {
 	uint32_t seg;
-	uint32_t work;			/* 0: G54 ...; INTERP_ORIGIN_UNTOLD */
+	uint16_t work;			/* 0: G54 ...; INTERP_ORIGIN_UNTOLD */
+	uint16_t mirrored;		/* Y (V) first changes its sign */
 	double turn_deg;		/* + from X toward Y; U V alike */
 	double mm[INTERP_NAXES];
 	uint32_t pass, npasses;		/* of G152: 2 of 3; 0: none of it */

@@ -18,8 +18,8 @@
 
 /*
  * T(id, name, unit, min, max, whole, help): one field a row.  Where the machine
- * file has the same value, its range is the same.  The rows of the generator
- * come first, then the others that the cycle goes by.
+ * file has the same value, its range is the same.  The rows that may go to the
+ * generator come first, then the others that the cycle goes by.
  */
 /* clang-format off */
 #define INTERP_TECH_ROWS(T) \
@@ -36,7 +36,7 @@ T(IGNITION_V, "ignition_v", "V", 10, 1000, false, \
   "open-circuit voltage") \
 T(ISO, "iso", "", 0, 1, true, \
   "1: the pulse is timed from its ignition") \
-/* The gap servo. */ \
+/* The gap servo; some generators take its reference too. */ \
 T(SERVO_V, "servo_v", "V", 0.1, 500, false, \
   "mean gap voltage to hold") \
 T(WINDOW_LOW_V, "window_low_v", "V", 0, 500, false, \
@@ -89,7 +89,8 @@ T(ROUGHNESS_UM, "roughness_um", "um Ra", 0, 1000, false, \
 enum interp_tech_id {
 	INTERP_TECH_ROWS(INTERP_TECH_ID)
 	INTERP_NTECH,
-	INTERP_NGENERATOR = INTERP_TECH_SERVO_V	/* those of the generator */
+	INTERP_NGENERATOR = INTERP_TECH_WINDOW_LOW_V	/* those that may go to
+							 * the generator */
 };
 
 struct interp_tech {
