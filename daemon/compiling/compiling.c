@@ -18,8 +18,6 @@ static struct interp_build_options build_of(const struct machine_config *c)
 		.corner_mm = c->corner_um * 1e-3,
 		.tolerance_mm = c->tolerance_um * 1e-3,
 		.rotary_radius_mm = c->rotary_radius_mm,
-		.chord_error_mm = c->chord_error_um / 1000,
-		.period_s = (double)config_period_ns(c) / 1e9,
 		.points_per_s = config_points_s(c),
 		.fit_mm = c->fit_um / 1000,
 	};

@@ -305,7 +305,6 @@ struct machine_config {
 	double tolerance_pulses;	/* mu */
 	uint32_t perpendicular;		/* 1: mu is square to the path */
 	int coupling;			/* enum interp_coupling */
-	double chord_error_um;		/* of curves; 0: no limit */
 	double fit_um;			/* tolerance to join lines into curves;
 					 * 0: none */
 	double feed_default_mm_min;	/* feed before the first F; 0: an F is

@@ -45,10 +45,6 @@ static const struct config_key row[] = {
 	WORDS(MACHINE, "coupling", "star", AT(coupling), coupling_word,
 	      "how three and more axes are coupled when one axis pulses "
 	       "at a time"),
-	NUMBER(MACHINE, "chord_error_um", "um", "1", 0, 1000,
-	       AT(chord_error_um),
-	       "on a curve, the straight way of one cycle is no farther "
-	       "off than this; 0: no limit"),
 	NUMBER(MACHINE, "fit_um", "um", "0", 0, 1000, AT(fit_um),
 	       "lines that are cut one after another are joined into "
 	       "curves no farther off than this; 0: they stay lines"),

@@ -8,7 +8,7 @@
  *				mm/s and 2 ms, for a picture
  */
 #include "curves.h"
-#include "interp/nurbs_feed.h"
+#include "interp/nurbs_way.h"
 #include "interp/nurbs_length.h"
 #include "tried/nurbs_step.h"
 
@@ -126,7 +126,8 @@ static void print_curve(const struct curve_data *d)
 	length_mm = interp_nurbs_length(&e, 0, 1, 1e-9);
 	for (int i = 0; i <= 100000; i++) {
 		interp_nurbs_way(&e, i / 100000.0, &way);
-		sharpest = fmax(sharpest, way.curvature);
+		sharpest = fmax(sharpest, sqrt(interp_nurbs_dot(
+				&c, way.d[1], way.d[1])));
 	}
 	printf("| %s | %u | %u | %.4f | %.4f |\n", d->name, d->degree,
 	       d->npoints, length_mm, 1 / sharpest);

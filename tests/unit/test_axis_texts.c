@@ -42,8 +42,7 @@ static bool take(struct rig *r, uint64_t *s, bool dry)
 	static struct script text;
 	const struct interp_build_options o = {
 		.machine = &axes_machine, .strategy = INTERP_SIMULTANEOUS,
-		.fit_mm = rnd(s) % 4 ? 0 : 0.01, .chord_error_mm = 0.001,
-		.period_s = PERIOD_S,
+		.fit_mm = rnd(s) % 4 ? 0 : 0.01,
 	};
 	struct cycle_config k;
 	const char *dialect;

@@ -195,7 +195,6 @@ static bool try_one(const struct script *text, const char *dialect,
 {
 	const struct interp_build_options bo = {
 		.machine = &machine, .strategy = how, .tolerance_milli = 2000,
-		.chord_error_mm = 0.001, .period_s = 1e-3,
 		.fit_mm = rnd(text->seed) % 4 ? 0 : 0.01,
 	};
 	struct interp_build *whole = random_build(text, dialect, &bo), *part;
@@ -280,7 +279,6 @@ static void a_probing_motion_is_made_again(void **st)
 	};
 	const struct interp_build_options bo = {
 		.machine = &machine, .strategy = INTERP_SIMULTANEOUS,
-		.chord_error_mm = 0.001, .period_s = 1e-3,
 	};
 
 	(void)st;
@@ -315,7 +313,6 @@ static struct interp_build *with_codes(uint32_t first, uint32_t second)
 {
 	const struct interp_build_options bo = {
 		.machine = &machine, .strategy = INTERP_SIMULTANEOUS,
-		.chord_error_mm = 0.001, .period_s = 1e-3,
 	};
 	static const double to[][INTERP_NAXES] = {
 		{ 0, 0, 1 }, { 0, 0, 0 },  { 0, 0, 1 },

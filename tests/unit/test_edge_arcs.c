@@ -148,7 +148,6 @@ static struct interp_build_options options(struct narrow *k, uint64_t *s)
 		.machine = &k->m, .tolerance_milli = 2000,
 		.strategy = (enum interp_strategy)
 			    (rnd(s) % INTERP_NSTRATEGIES),
-		.chord_error_mm = 0.001, .period_s = 0.001,
 	};
 }
 

@@ -180,7 +180,7 @@ static void choose(struct job *j, const struct interp_machine *m)
 	static const uint32_t mus[] = { 1000, 1500, 2000, 5000, 20000 };
 
 	j->o = (struct interp_build_options) {
-		.machine = m, .chord_error_mm = 0.001,
+		.machine = m,
 		.strategy = (enum interp_strategy)
 			    (rnd(&seed) % INTERP_NSTRATEGIES),
 		.coupling = (enum interp_coupling)

@@ -55,7 +55,6 @@ static bool compile(struct job *j, const struct interp_machine *m,
 	const struct interp_build_options o = {
 		.machine = m, .strategy = j->how, .tolerance_milli = 2000,
 		.fit_mm = rnd(j->text.seed) % 4 ? 0 : 0.01,
-		.chord_error_mm = 0.001, .period_s = j->period_us * 1e-6,
 	};
 
 	return random_compile(&j->text, j->dialect, &o, ret);

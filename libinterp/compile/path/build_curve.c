@@ -189,7 +189,7 @@ static int piece_add(struct curve_plan *p, double to)
 	if (err < 0)
 		return err;
 	step.seg.ticks = p->walk.places * p->turns;
-	step.feed_max_mm_s = build_curve_feed(p);
+	step.feed_max_mm_s = INFINITY;
 	step.seg.arg = (uint32_t)p->b->pieces.n;
 	stored = build_table_add(&p->b->pieces);
 	if (!stored)
@@ -205,7 +205,7 @@ static int piece_add(struct curve_plan *p, double to)
 static void piece_begin(struct curve_plan *p, double u)
 {
 	p->from = u;
-	p->seen = (struct curve_seen) { .bend = 0 };
+	p->seen = (struct curve_seen) { .counted = 0 };
 	p->last = build_curve_look(p, u);
 	p->least_mm_s = p->most_mm_s = p->last.mm_s;
 }

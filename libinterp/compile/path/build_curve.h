@@ -8,9 +8,10 @@
 #define PATH_BUILD_CURVE_H
 
 #include "interp/build.h"
-#include "interp/nurbs_feed.h"
+#include "interp/nurbs_way.h"
 #include "path/builder.h"
 #include "pulse/pulse.h"
+#include "speed/along.h"
 
 /**
  * build_curve_store() - add those axes of a valid curve that move, and its
@@ -25,20 +26,17 @@ int build_curve_store(struct interp_build *b,
 
 /* What the looks at a piece have found; the largest of each. */
 struct curve_seen {
-	double bend;			/* curvature; HUGE_VAL: a cusp */
 	double counted;			/* mm of the axes that count, in one of
 					 * the length */
 	double d[INTERP_NAXES];		/* |x_s| of each column */
 };
 
-/* The feed that the axes allow at @u, how far each axis goes in a mm there, and
- * how that changes by parameter; 0 at a cusp. */
+/* The feed that the axes allow at @u, and how far each axis goes in a mm there;
+ * 0 at a cusp. */
 struct curve_look {
 	double u, mm_s;
-	double heading[INTERP_NAXES], turn[INTERP_NAXES];
+	double heading[INTERP_NAXES];
 };
-
-#define BUILD_SLOWEST_BESIDE	0.05	/* of the slowest, at a cusp */
 
 /* A NURBS while it is cut into segments. */
 struct curve_plan {
@@ -48,9 +46,8 @@ struct curve_plan {
 	struct interp_diag *diag;
 	struct interp_curve curve;	/* as stored */
 	const double *here_mm;		/* where the program stands */
-	struct interp_nurbs_limits limits;	/* of the axes, on bends */
-	double chord_mm_s;		/* the fastest round a radius of 1 mm
-					 * within the chord error */
+	struct interp_axes along, beside;	/* of the columns that count,
+						 * and of the others */
 	double pulses_mm[INTERP_NAXES];	/* of each axis */
 	double pulse_mm;		/* the finest */
 	double slowest_mm_s;		/* bends make it no slower */
@@ -60,7 +57,6 @@ struct curve_plan {
 	bool scouts;			/* only looks, adds no piece */
 	double beside_mm_s;		/* the least that axes beside the path
 					 * allow */
-	double a_mm_s2, j_mm_s3;	/* of the weakest axis */
 	uint32_t moved, turns;
 	struct interp_curve_walk walk;
 	size_t mark;
@@ -110,7 +106,7 @@ int build_curve_check_way(struct curve_plan *p);
 
 /* build_curve_feed.c: */
 
-/** build_curve_limit() - what the axes and the chord error allow on bends. */
+/** build_curve_limit() - what the axes can do. */
 void build_curve_limit(struct curve_plan *p);
 
 /**
@@ -122,10 +118,6 @@ struct curve_look build_curve_look(struct curve_plan *p, double u);
 /** build_curve_look_between() - and where it is tightest between two looks. */
 void build_curve_look_between(struct curve_plan *p, const struct curve_look *a,
 			      const struct curve_look *b);
-
-/** build_curve_feed() - the most that the chord error allows on the piece in
- *  hand, mm/s. */
-double build_curve_feed(const struct curve_plan *p);
 
 /** build_curve_rate() - the most pulses that one of its axes goes in a mm. */
 double build_curve_rate(const struct curve_plan *p);

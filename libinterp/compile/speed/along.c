@@ -125,6 +125,14 @@ static void leave(const struct motion *m, uint32_t k, const double *way,
 		ret->j_mm_s3 = smaller(ret->j_mm_s3, go->j_mm_s3);
 }
 
+void interp_axes_overlook(double *way, double pulse_mm)
+{
+	const double most = 1 / pulse_mm;
+
+	way[1] = larger(smaller(way[1], most), -most);
+	way[2] = larger(smaller(way[2], most * most), -most * most);
+}
+
 double interp_axes_mm_s(const struct interp_axes *x, const double *way,
 			const struct interp_straight *kept,
 			struct interp_straight *ret_left)

@@ -44,6 +44,14 @@ struct interp_straight {
 struct interp_straight interp_axes_straight(const struct interp_axes *x,
 					    const double *way);
 
+/**
+ * interp_axes_overlook() - take no notice of a bend of a curve whose radius is
+ * less than a pulse.
+ *
+ * @way: of a column that makes the length.  One beside it goes on there.
+ */
+void interp_axes_overlook(double *way, double pulse_mm);
+
 /* No bend takes more than that of what the axes can do along the path: the rest
  * is there to speed up and to brake. */
 #define INTERP_AXES_KEPT	0.9

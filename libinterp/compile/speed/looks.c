@@ -72,24 +72,11 @@ static float least(float a, double b)
 	return (double)a < b ? a : (float)b;
 }
 
-/* Axes do not notice a bend of a curve whose radius is less than a pulse; but
- * one beside the path goes on there. */
-static void overlook(const struct making *m, uint32_t along, double *way)
-{
-	const double most = 1 / m->pulse_mm;
-
-	for (uint32_t k = 0; k < m->to->axes.n; k++, way += INTERP_AXES_WAY) {
-		if (!(along >> k & 1))
-			continue;
-		way[1] = larger(smaller(way[1], most), -most);
-		way[2] = larger(smaller(way[2], most * most), -most * most);
-	}
-}
-
 static int look(struct making *m, const struct section *s, double s_mm,
 		struct looks *of)
 {
 	struct look_all *to = m->to;
+	const bool is_curve = to->p->segs[s->from].kind == INTERP_CURVE;
 	const size_t each = to->axes.n * INTERP_AXES_WAY;
 	double way[INTERP_NAXES * INTERP_AXES_WAY];
 	struct interp_straight straight;
@@ -99,8 +86,10 @@ static int look(struct making *m, const struct section *s, double s_mm,
 	    grow_array(&to->way, &to->room, each * sizeof(float)) < 0)
 		return -ENOMEM;
 	sections_way(&m->sections, s, s_mm, way);
-	if (to->p->segs[s->from].kind == INTERP_CURVE)
-		overlook(m, s->along, way);
+	for (uint32_t k = 0; is_curve && k < to->axes.n; k++)
+		if (s->along >> k & 1)
+			interp_axes_overlook(way + k * INTERP_AXES_WAY,
+					     m->pulse_mm);
 	straight = interp_axes_straight(&to->axes, way);
 	of->a_mm_s2 = least(of->a_mm_s2, straight.a_mm_s2);
 	of->j_mm_s3 = least(of->j_mm_s3, straight.j_mm_s3);

@@ -6,7 +6,7 @@
 #include "speed/run.h"
 
 #include "interp/at.h"
-#include "interp/nurbs_feed.h"
+#include "interp/nurbs_way.h"
 #include "interp/smaller.h"
 
 #include "grow.h"

@@ -39,9 +39,6 @@ struct interp_build_options {
 	double corner_mm;		/* of limits.h; 0: its defaults */
 	double tolerance_mm, rotary_radius_mm;
 	double start_mm[INTERP_NAXES];	/* where the machine stands */
-	double chord_error_mm;		/* of curves: the straight way of one */
-	double period_s;		/* period is no farther off than this;
-					 * if either is 0 there is no limit */
 	double points_per_s;		/* lattice points that the machine can
 					 * make; 0: no limit */
 	uint32_t walked_max;		/* lattice points that are walked to
@@ -210,7 +207,7 @@ struct interp_build_curve {
  *
  * It becomes one or several segments.  A segment ends at a cusp or a corner,
  * and where the curve needs a slower or faster feed.  Each segment gets
- * the fastest feed that keeps the chord error and the limits of the axes.
+ * the fastest feed that its axes allow.
  */
 int interp_build_curve(struct interp_build *b,
 		       const struct interp_build_curve *c,

@@ -57,52 +57,11 @@
 #define INTERP_TOLERANCE_MM	0.001
 #define INTERP_ROTARY_MM	57.3	/* there 0.001 mm is 0.001 degrees */
 
-/* Where a curve is cut: of an axis's acceleration, what may follow a bend. */
-#define INTERP_BEND_ACROSS	0.8
-/* Of an axis beside the path. */
-#define INTERP_BESIDE_ACROSS	0.6
-
 /*
- * The same of its jerk, which has three parts: of the bend itself, v^3 / r^2;
- * of speeding up on the bend, 3 * v * a / r; and of the jerk along the path,
- * which has what is left.  On an arc the second is square to the others, on a
- * curve all may point one way.  All three are counted at the ceiling of the
- * speed, because a move may brake with all of its acceleration where it comes
- * to a bend at its ceiling.
+ * Of the jerk of an axis, what may speed up on a bend.  It is counted as square
+ * to the jerk of the bend itself and to that along the path.
  */
 #define INTERP_ARC_JERK_BOTH	0.66
-#define INTERP_CURVE_JERK_ROUND	0.2
-#define INTERP_CURVE_JERK_BOTH	0.4
-
-/*
- * Of the acceleration, that must be left to speed up on the bend of a curve:
- * one too tight for that is gone round slower, for a move has the least of all
- * its way.  Of an acceleration that the jerk lets no move come to, nothing is
- * kept: from 0 to @v_mm_s none takes more than sqrt(v * j).  An arc always
- * leaves more.
- */
-#define INTERP_BEND_LEAST	0.05
-
-/** interp_bend_least() - that acceleration, where the speed is @v_mm_s. */
-static inline double interp_bend_least(double v_mm_s, double a_mm_s2,
-				       double j_mm_s3)
-{
-	const double most = v_mm_s * j_mm_s3 < a_mm_s2 * a_mm_s2 ?
-			    sqrt(v_mm_s * j_mm_s3) : a_mm_s2;
-
-	return INTERP_BEND_LEAST * most;
-}
-
-/** interp_bend_mm_s() - the speed at which that acceleration and @per_mm take
- *  the jerk @left: per_mm * v * interp_bend_least(v) = left. */
-static inline double interp_bend_mm_s(double left_mm_s3, double per_mm,
-				      double a_mm_s2, double j_mm_s3)
-{
-	const double k = left_mm_s3 / (per_mm * INTERP_BEND_LEAST);
-	const double by_a = k / a_mm_s2, by_j = cbrt(k * k / j_mm_s3);
-
-	return by_a > by_j ? by_a : by_j;
-}
 
 struct interp_limits {
 	const struct interp_machine *machine;

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * feed.c - how fast a curve may be followed at a point
+ * way.c - how a curve goes at a point, by the length of the path
  *
  * The derivatives by length follow from those by parameter.  With g = |C'|:
  *
  *	u_s = 1/g,  u_ss = -g'/g^3,  u_sss = (3 g'^2 - g g'')/g^5
  */
-#include "interp/nurbs_feed.h"
+#include "interp/nurbs_way.h"
 
 #include <math.h>
 
@@ -36,29 +36,4 @@ void interp_nurbs_way(struct interp_nurbs_eval *e, double u,
 		ret->d[2][j] = p.d[3][j] * us * us * us +
 			       3 * p.d[2][j] * us * uss + p.d[1][j] * usss;
 	}
-	ret->curvature = sqrt(interp_nurbs_dot(c, ret->d[1], ret->d[1]));
-}
-
-double interp_nurbs_feed_mm_s(const struct interp_nurbs *c,
-			      const struct interp_nurbs_way *w,
-			      const struct interp_nurbs_limits *l)
-{
-	const double k = w->curvature;
-	double v = HUGE_VAL;
-
-	if (w->cusp)
-		return 0;
-	if (k > 0) {
-		v = sqrt(8 * l->chord_error_mm / k) / l->period_s;
-		v = fmin(v, sqrt(l->centripetal_mm_s2 / k));
-	}
-	for (uint32_t j = 0; j < c->naxes; j++) {
-		if (w->d[0][j] != 0)
-			v = fmin(v, l->v_mm_s[j] / fabs(w->d[0][j]));
-		if (w->d[1][j] != 0)
-			v = fmin(v, sqrt(l->a_mm_s2[j] / fabs(w->d[1][j])));
-		if (w->d[2][j] != 0)
-			v = fmin(v, cbrt(l->j_mm_s3[j] / fabs(w->d[2][j])));
-	}
-	return v;
 }
