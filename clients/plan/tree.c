@@ -20,6 +20,7 @@
 
 /* The spread of more triangles than that is told by so many of them. */
 #define SAMPLE		512u
+#define TRIED		32u		/* about so many boxes are compared */
 
 #define WALLS		4u		/* triangles whose planes are tried */
 #define WALL_LEAST	32u		/* triangles that can have a wall */
@@ -244,40 +245,47 @@ static void reach(const struct row *r, uint32_t many, const struct box *b,
 	ret[1] = hi;
 }
 
-/* The sum of its sides if it lies along @axis. */
-static float sides(const struct row *r, const struct rot *axis)
-{
-	struct box b = { 0 };
-	box_v4 to[2];
+/* A box round a row, or round some of it. */
+struct trial {
+	struct box b;			/* its axes */
+	box_v4 to[2];			/* from where to where it reaches */
+	float sides;			/* their sum */
+};
 
-	take_axes(axis, &b);
-	reach(r, r->n < SAMPLE ? r->n : SAMPLE, &b, to);
-	to[1] -= to[0];
-	return to[1][0] + to[1][1] + to[1][2];
+/* @best is the box along @axis if that is smaller. */
+static void try_axes(const struct row *r, const struct rot *axis,
+		     struct trial *best)
+{
+	struct trial t = { .sides = 0 };
+	box_v4 side;
+
+	take_axes(axis, &t.b);
+	reach(r, r->n < TRIED ? r->n : TRIED, &t.b, t.to);
+	side = t.to[1] - t.to[0];
+	t.sides = side[0] + side[1] + side[2];
+	if (t.sides < best->sides)
+		*best = t;
 }
 
-/* Those of the spread, or along an edge of the first of them: along which their
- * box is smallest. */
-static void choose_axes(const struct row *r, double mean[3], struct rot *ret)
+/* Along an edge of the first of them, or along the axes of their spread: where
+ * their box is smallest.  That of one triangle is smallest along an edge. */
+static void choose_box(const struct row *r, double mean[3], struct trial *ret)
 {
+	const struct triangle *first = &r->t->tri[r->from];
+	struct rot axis;
 	double m[3][3];
-	float least;
 
-	spread(r->t, r->from, r->n, mean, m);
-	principal(m, ret);
-	least = sides(r, ret);
-	for (int k = 0; k < 3; k++) {
-		struct rot axis;
-		float sum;
-
-		if (!lie_along(&r->t->tri[r->from], k, &axis))
-			continue;
-		sum = sides(r, &axis);
-		if (sum < least) {
-			least = sum;
-			*ret = axis;
-		}
+	ret->sides = FLT_MAX;
+	for (int k = 0; k < 3; k++)
+		if (lie_along(first, k, &axis))
+			try_axes(r, &axis, ret);
+	if (r->n > 1 || ret->sides == FLT_MAX) {
+		spread(r->t, r->from, r->n, mean, m);
+		principal(m, &axis);
+		try_axes(r, &axis, ret);
 	}
+	if (r->n > TRIED)
+		reach(r, r->n, &ret->b, ret->to);
 }
 
 /* -- Cutting -------------------------------------------------------------- */
@@ -363,18 +371,15 @@ static void split(struct build *b, uint32_t node, uint32_t from, uint32_t n)
 {
 	const struct row r = { b->t, from, n };
 	struct box *x = &b->t->node[node];
+	struct trial best;
+	double mean[3], normal[3];
 	struct slab s;
-	double mean[3];
-	struct rot axis;
-	box_v4 to[2];
 	uint32_t in;
 	int along;
 
-	choose_axes(&r, mean, &axis);
-	*x = (struct box) { 0 };
-	take_axes(&axis, x);
-	reach(&r, n, x, to);
-	close_box(x, b->t->tri[from].at[0], to[0], to[1]);
+	choose_box(&r, mean, &best);
+	*x = best.b;
+	close_box(x, b->t->tri[from].at[0], best.to[0], best.to[1]);
 	if (n <= TREE_LEAF) {
 		x->first = from;
 		x->n = n;
@@ -382,8 +387,10 @@ static void split(struct build *b, uint32_t node, uint32_t from, uint32_t n)
 	}
 	along = longest(x);
 	if (!find_wall(b, from, n, x->half[along], &s)) {
+		for (int k = 0; k < 3; k++)
+			normal[k] = (double)x->axis[k][along];
 		s.low = -FLT_MAX;
-		s.high = take_normal(b, axis.m[along], mean, &s);
+		s.high = take_normal(b, normal, mean, &s);
 	}
 	in = cut(b, from, n, &s);
 	x->first = b->t->nnodes;
