@@ -207,11 +207,13 @@ int main(int argc, char **argv)
 	err = put_check(&o);
 	if (err)
 		return err;
-	bar_catch();
+	/* Before it is loaded Ctrl-C has nothing to save. */
 	err = job_load(&job, &o);
-	if (err == 0)
+	if (err == 0) {
+		bar_catch();
 		err = o.check ? check_program(&job) :
 		    o.measure ? measure_poses(&job) : plan_program(&job);
+	}
 	job_free(&job);
 	return err;
 }

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import random
+import signal
 import struct
 import subprocess
 from pathlib import Path
@@ -350,7 +351,6 @@ def test_a_plan_that_cannot_be_is_refused_and_nothing_is_written(channel,
 def on_a_terminal(cmd, stop_at):
     """Run it with a terminal as stderr, and press Ctrl-C when that is seen."""
     import pty
-    import signal
     outer, inner = pty.openpty()
     p = subprocess.Popen([str(c) for c in cmd], stdout=subprocess.PIPE,
                          stderr=inner, text=True)
@@ -392,3 +392,20 @@ def test_ctrl_c_before_the_first_way_writes_nothing(channel, tmp_path):
     # As above: a plan that was ready is written.
     assert out.exists() == (rc == 0)
     assert rc == 0 or "interrupted; nothing is written" in seen
+
+
+def test_ctrl_c_while_files_are_loaded_ends_it_at_once(channel, tmp_path):
+    """It reads its machine file from a pipe that stays open."""
+    pipe, out = tmp_path / "machine.ini", tmp_path / "way.ngc"
+    os.mkfifo(pipe)
+    p = subprocess.Popen([B / "edm-plan", "--part", channel / "part.stl",
+                          "--electrode", channel / "electrode.stl",
+                          "--machine", pipe, "--output", out,
+                          channel / "dense.ngc"])
+    with open(pipe, "w"):
+        p.send_signal(signal.SIGINT)
+        try:
+            assert p.wait(timeout=60) == -signal.SIGINT
+        finally:
+            p.kill()
+    assert not out.exists()
