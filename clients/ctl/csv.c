@@ -93,13 +93,6 @@ int csv_open(struct csv *c, const char *program, const char *path, int times)
 	return check_heading(c);
 }
 
-void csv_rewind(struct csv *c)
-{
-	rewind(c->f);
-	c->line = 0;
-	read_line(c);
-}
-
 static void tell(struct csv *c)
 {
 	int percent;

@@ -44,9 +44,6 @@ struct csv {
  */
 int csv_open(struct csv *c, const char *program, const char *path, int times);
 
-/** csv_rewind() - go back to the first row. */
-void csv_rewind(struct csv *c);
-
 /** csv_next() - Return: 1; 0 at the end; -EINVAL, and the place was printed. */
 int csv_next(struct csv *c, struct csv_row *ret);
 

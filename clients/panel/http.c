@@ -41,11 +41,6 @@ struct route {
 	int (*run)(struct request *r);
 };
 
-size_t http_request_size(void)
-{
-	return sizeof(struct request);
-}
-
 /* -- Whose request is it -------------------------------------------------- */
 
 /* Does "HOST:PORT" mean this panel: its address, or a name in [panel] names? */

@@ -96,9 +96,6 @@ bool http_is_ours(struct panel *p, struct lws *wsi, bool want_origin);
  */
 struct session *http_session(struct panel *p, struct lws *wsi);
 
-/** http_request_size() - the bytes that HTTP keeps for a connection. */
-size_t http_request_size(void);
-
 /* -- socket.c: the web socket --------------------------------------------- */
 
 int socket_callback(struct lws *wsi, enum lws_callback_reasons reason,

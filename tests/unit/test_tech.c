@@ -349,18 +349,15 @@ static void the_nearest_conditions_are_named(void **state)
 	interp_tech_table_destroy(t);
 }
 
-static void an_orbit_leaves_gap_and_allowance_and_is_never_negative(void **s)
+static void a_pass_stops_short_by_gap_and_allowance(void **s)
 {
 	struct interp_tech t, last;
 
 	(void)s;
 	interp_tech_clear(&t);
 	interp_tech_clear(&last);
-	assert_true(interp_tech_orbit_mm(&t, 0.3) == 0.3);
 	t.v[INTERP_TECH_GAP_MM] = 0.06;
 	t.v[INTERP_TECH_ALLOWANCE_MM] = 0.04;
-	assert_true(fabs(interp_tech_orbit_mm(&t, 0.3) - 0.2) < 1e-12);
-	assert_true(interp_tech_orbit_mm(&t, 0.05) == 0);
 	assert_true(fabs(interp_tech_short_of_mm(&t, &last) - 0.04) < 1e-12);
 	last.v[INTERP_TECH_GAP_MM] = 0.02;
 	assert_true(fabs(interp_tech_short_of_mm(&t, &last) - 0.08) < 1e-12);
@@ -381,7 +378,7 @@ int main(void)
 		cmocka_unit_test(an_enc_row_that_is_none_is_refused),
 		cmocka_unit_test(a_row_must_go_over_the_machines_values),
 		cmocka_unit_test(the_nearest_conditions_are_named),
-		cmocka_unit_test(an_orbit_leaves_gap_and_allowance_and_is_never_negative),
+		cmocka_unit_test(a_pass_stops_short_by_gap_and_allowance),
 	};
 
 	return cmocka_run_group_tests_name("tech", tests, NULL, NULL);

@@ -66,18 +66,6 @@ const struct interp_dialect *interp_dialect_by_suffix(const char *path)
 	return NULL;
 }
 
-const struct interp_dialect *interp_dialect_by_file(const char *path)
-{
-	const struct interp_dialect *d = interp_dialect_by_suffix(path);
-
-	return d ? d : &dialects[0];
-}
-
-const char *interp_dialect_name(const struct interp_dialect *d)
-{
-	return d->name;
-}
-
 bool interp_dialect_is_nc(const struct interp_dialect *d)
 {
 	return d->reads == DIALECT_NC;

@@ -110,11 +110,3 @@ double interp_tech_short_of_mm(const struct interp_tech *t,
 		mm += t->v[INTERP_TECH_GAP_MM] - last->v[INTERP_TECH_GAP_MM];
 	return mm > 0 ? mm : 0;
 }
-
-double interp_tech_orbit_mm(const struct interp_tech *t, double undersize_mm)
-{
-	const double mm = undersize_mm - or_zero(t, INTERP_TECH_GAP_MM) -
-			  or_zero(t, INTERP_TECH_ALLOWANCE_MM);
-
-	return mm > 0 ? mm : 0;
-}

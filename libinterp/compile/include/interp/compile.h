@@ -28,12 +28,6 @@ const struct interp_dialect *interp_dialect_by_name(const char *name);
  */
 const struct interp_dialect *interp_dialect_by_suffix(const char *path);
 
-/** interp_dialect_by_file() - the same; else generic. */
-const struct interp_dialect *interp_dialect_by_file(const char *path);
-
-/** interp_dialect_name() - as interp_dialect_by_name() knows it. */
-const char *interp_dialect_name(const struct interp_dialect *d);
-
 /** interp_dialect_is_nc() - NC code, not records of 3B or 4B? */
 bool interp_dialect_is_nc(const struct interp_dialect *d);
 

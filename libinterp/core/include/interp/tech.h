@@ -162,13 +162,4 @@ int interp_tech_find(const char *name);
 double interp_tech_short_of_mm(const struct interp_tech *t,
 			       const struct interp_tech *last);
 
-/**
- * interp_tech_orbit_mm() - radius of an orbit with an electrode that is
- * @undersize_mm smaller per side than the cavity.
- *
- * undersize - gap_mm - allowance_mm, so that the condition leaves its
- * allowance at the walls.  Never negative; what is not given counts as 0.
- */
-double interp_tech_orbit_mm(const struct interp_tech *t, double undersize_mm);
-
 #endif /* INTERP_TECH_H */
