@@ -152,6 +152,7 @@ static void only_told(const struct machine_config *c, int field,
 		config_way(c, field, true, &told);
 	if (field >= INTERP_NGENERATOR || told.kind == WAY_NONE || !d->there)
 		return;
+	d->measured = told.within > 0;
 	if (told.gives.n)
 		only_in_list(d, &told.gives, asked->kind == WAY_DAC ? 0 :
 					     asked->scale / 2);

@@ -107,6 +107,7 @@ enum cycle_restored cycle_restore(struct cycle *c,
 	 * cut. */
 	if (!conditions_restore(c, past->sets, past->nsets))
 		return RESTORE_OTHER_VALUES;
+	asking_restore(c);
 	c->out.pump = past->pump;
 	restore_actions(c);
 	restore_mcode(c, past);

@@ -85,6 +85,7 @@ struct process_delivers {
 	bool there;
 	bool by_hand;			/* a person sets it */
 	bool stays;			/* until it gets another one */
+	bool measured;			/* what it tells is not what is set */
 	double min, max, step;		/* with n 0 */
 	uint32_t n;			/* else these alone, in any order */
 	double value[PROCESS_VALUES_MAX];

@@ -286,6 +286,40 @@ static void a_jump_over_a_change_asks_for_nothing(void **state)
 	rig_free(&r);
 }
 
+/* A reading is of what the generator has by then: that of the cut before, or
+ * its own, or what is asked for.  An open gap shows it. */
+static void a_reading_is_judged_by_what_the_generator_may_have(void **state)
+{
+	static const double asked_v[] = { NAN, 300, NAN, 60, NAN, 180 };
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct cycle_config k = limited_config(false);
+	double has_v = 80;
+	struct rig r;
+
+	(void)state;
+	k.gap.ignition_v = 80;
+	give_steps(&k.asking.field[INTERP_TECH_IGNITION_V], 1, 300);
+	for (int i = 0; i < 6; i++) {
+		struct interp_tech t = tech_of(6, 8, NAN);
+
+		t.v[INTERP_TECH_IGNITION_V] = asked_v[i];
+		t.v[INTERP_TECH_OPEN_V] = 50;
+		cut_in(b, -0.2 * (i + 1), (uint32_t)i, &t);
+	}
+	rig_load(&r, b, &k);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	for (int i = 0; i < 20000 && r.c.loaded; i++) {
+		const double v = r.out.pulse[INTERP_TECH_IGNITION_V];
+
+		step(&r, i % 50 < 2 || !r.c.asking.has ? has_v : 35);
+		assert_int_equal(r.c.fault.latched, 0);
+		if (r.c.asking.age == SETTLE)
+			has_v = isnan(v) ? 80 : v;
+	}
+	assert_false(r.c.loaded);
+	rig_free(&r);
+}
+
 static void one_that_never_has_it_never_gets_a_spark(void **state)
 {
 	struct cycle_config k = limited_config(true);
@@ -532,6 +566,95 @@ static void what_was_tried_is_given_back_with_a_job_and_without(void **state)
 	rig_free(&r);
 }
 
+/* A slave has at once what it is asked for, and keeps it. */
+static void kept_period(struct rig *r)
+{
+	const double on_us = r->out.pulse[INTERP_TECH_ON_US];
+	struct io_generator *says = &r->in.generator;
+
+	says->in_force = r->out.asked;
+	if (!isnan(on_us))
+		says->told[INTERP_TECH_ON_US] = on_us;
+	step(r, asking_waits(&r->c) ? 0 : SPARKING_V);
+}
+
+/* The third cut does not give the on time, of which it had 5 us. */
+static void rig_kept(struct rig *r, struct cycle_config *k)
+{
+	const struct interp_tech t[] = {
+		tech_of(6, 8, NAN), tech_of(6, 20, NAN), tech_of(6, NAN, NAN),
+	};
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+
+	k->asking.field[INTERP_TECH_ON_US].stays = true;
+	for (int i = 0; i < 3; i++)
+		cut_in(b, i < 2 ? -0.1 * (i + 1) : -4, (uint32_t)i, &t[i]);
+	rig_load(r, b, k);
+	r->in.generator.tells = 1u << INTERP_TECH_ON_US;
+	r->in.generator.told[INTERP_TECH_ON_US] = 5;
+	assert_int_equal(tell(r, CYCLE_START), ANSWER_DONE);
+}
+
+static void until_the_third_cut(struct rig *r)
+{
+	while (!r->c.asking.stands &&
+	       !(r->out.power && cond_cut(&r->c.cursor)->number == 2))
+		kept_period(r);
+}
+
+static void what_nobody_asks_for_any_more_is_as_before(void **state)
+{
+	struct cycle_config k = limited_config(true);
+	const double *has;
+	struct rig r;
+
+	(void)state;
+	rig_kept(&r, &k);
+	has = &r.in.generator.told[INTERP_TECH_ON_US];
+	until_the_third_cut(&r);
+	assert_true(r.out.power && *has == 5);
+	for (int twice = 0; twice < 2; twice++) {
+		assert_int_equal(conditions_set(&r.c, INTERP_TECH_ON_US, 30),
+				 CONDITIONS_DONE);
+		while (!r.out.power || *has == 5)
+			kept_period(&r);
+		assert_true(*has == 30);
+		assert_int_equal(conditions_set(&r.c, INTERP_TECH_ON_US, NAN),
+				 CONDITIONS_DONE);
+		while (!r.out.power || *has == 30)
+			kept_period(&r);
+		assert_true(*has == 5);
+	}
+	rig_free(&r);
+}
+
+/* What is measured is not what is set. */
+static void a_person_gives_back_what_nobody_knows(void **state)
+{
+	struct cycle_config k = limited_config(true);
+	struct rig r;
+
+	(void)state;
+	k.asking.field[INTERP_TECH_ON_US].measured = true;
+	rig_kept(&r, &k);
+	until_the_third_cut(&r);
+	assert_false(r.out.power);
+	assert_int_equal(r.c.asking.stands, 1u << INTERP_TECH_ON_US);
+	assert_int_equal(tell(&r, CYCLE_CONFIRM), ANSWER_DONE);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	while (r.c.asking.stands)
+		kept_period(&r);
+	until_the_third_cut(&r);
+	assert_true(r.out.power);
+	/* After a crash the place may be in force, or not. */
+	asking_restore(&r.c);
+	kept_period(&r);
+	kept_period(&r);
+	assert_false(r.out.power);
+	assert_int_equal(r.c.asking.stands, 1u << INTERP_TECH_ON_US);
+	rig_free(&r);
+}
+
 /* One that keeps it, and did not tell what it had before. */
 static void what_only_a_person_can_give_back_is_asked_for(void **state)
 {
@@ -705,6 +828,7 @@ int main(void)
 		cmocka_unit_test(never_a_spark_with_another_condition_than_the_places),
 		cmocka_unit_test(a_change_takes_the_settling_and_two_periods_at_most),
 		cmocka_unit_test(a_jump_over_a_change_asks_for_nothing),
+		cmocka_unit_test(a_reading_is_judged_by_what_the_generator_may_have),
 		cmocka_unit_test(one_that_never_has_it_never_gets_a_spark),
 		cmocka_unit_test(trouble_ends_the_sparks_in_its_period),
 		cmocka_unit_test(what_a_person_sets_is_asked_for_at_each_change),
@@ -714,6 +838,8 @@ int main(void)
 		cmocka_unit_test(an_electrode_is_positive_where_nobody_says_it),
 		cmocka_unit_test(it_is_tried_without_a_job_and_never_with_one),
 		cmocka_unit_test(what_was_tried_is_given_back_with_a_job_and_without),
+		cmocka_unit_test(what_nobody_asks_for_any_more_is_as_before),
+		cmocka_unit_test(a_person_gives_back_what_nobody_knows),
 		cmocka_unit_test(what_only_a_person_can_give_back_is_asked_for),
 		cmocka_unit_test(what_is_leased_is_given_back_when_nobody_renews_it),
 		cmocka_unit_test(what_is_leased_covers_what_stays),

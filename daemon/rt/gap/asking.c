@@ -13,19 +13,14 @@ static bool same(double a, double b)
 
 void asking_init(struct asking *a)
 {
-	*a = (struct asking) { .in_force = true, .ignition_v = (double)NAN };
+	*a = (struct asking) { .in_force = true };
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		a->now[i] = a->place[i] = a->hand[i] = (double)NAN;
 }
 
-static uint32_t tried_fields(const struct asking *a)
-{
-	return a->trial.fields | a->leased.fields;
-}
-
 static bool is_tried(const struct asking *a, int i)
 {
-	return tried_fields(a) >> i & 1;
+	return (a->trial.fields | a->leased.fields) >> i & 1;
 }
 
 static double tried(const struct asking *a, int i)
@@ -34,20 +29,20 @@ static double tried(const struct asking *a, int i)
 					   a->trial.value[i];
 }
 
-/* It is tried, or it was, and nobody else asks for it. */
-static bool is_lent(const struct cycle *c, int i)
+static bool is_lent(const struct asking *a, int i)
 {
-	return is_tried(&c->asking, i) ||
-	       (c->asking.lent >> i & 1 && isnan(c->out.pulse[i]));
+	return a->lent >> i & 1;
 }
 
-/* What the place asks for, or who tries the generator. */
+/* What the place asks for, or who tries the generator, or it was asked for and
+ * nobody asks any more. */
 static double asked_for(const struct cycle *c, int i)
 {
 	const struct asking *a = &c->asking;
 
-	return !is_lent(c, i) ? c->out.pulse[i] :
-	       is_tried(a, i) ? tried(a, i) : a->before[i];
+	return is_tried(a, i) ? tried(a, i) :
+	       isnan(c->out.pulse[i]) && is_lent(a, i) ? a->before[i] :
+							 c->out.pulse[i];
 }
 
 /* ... as the generator can do it. */
@@ -56,13 +51,39 @@ static double wanted(const struct cycle *c, int i)
 	return process_nearest(&c->config.asking.field[i], i, asked_for(c, i));
 }
 
+/* What it has set by now; NAN: nobody knows.  What is measured is not that. */
+static double has_by_now(const struct cycle *c, int i)
+{
+	const struct process_delivers *d = &c->config.asking.field[i];
+	const struct io_generator *says = &c->asking.says;
+
+	return says->tells >> i & 1 && !d->measured ?
+	       process_nearest(d, i, says->told[i]) : (double)NAN;
+}
+
+/* Before @value is asked for. */
+static void lend(struct cycle *c, int i, double value)
+{
+	struct asking *a = &c->asking;
+
+	if (is_lent(a, i) || isnan(value))
+		return;
+	a->lent |= 1u << i;
+	a->before[i] = has_by_now(c, i);
+}
+
 double asking_off_us(const struct cycle *c, double off_us)
 {
 	const struct asking_config *k = &c->config.asking;
 	const struct process_delivers *d = &k->field[INTERP_TECH_OFF_US];
 
-	return !k->limited ? off_us : d->by_hand ? (double)NAN :
-	       process_nearest(d, INTERP_TECH_OFF_US, off_us);
+	if (!k->limited)
+		return off_us;
+	/* One that nobody gave could not be taken back. */
+	if (d->by_hand ||
+	    (d->stays && isnan(c->out.pulse[INTERP_TECH_OFF_US])))
+		return (double)NAN;
+	return process_nearest(d, INTERP_TECH_OFF_US, off_us);
 }
 
 bool asking_takes(const struct cycle *c, uint32_t field, double value)
@@ -93,13 +114,7 @@ bool asking_try(struct cycle *c, uint32_t field, double value, bool leased)
 	if (!isnan(value) && (d->by_hand ||
 			      isnan(process_nearest(d, (int)field, value))))
 		return false;
-	if (!isnan(value) && !(a->lent >> field & 1)) {
-		a->before[field] = a->says.tells >> field & 1 ?
-				   a->says.told[field] : (double)NAN;
-		a->lent |= 1u << field;
-		if (d->stays && isnan(a->before[field]))
-			a->unknown |= 1u << field;
-	}
+	lend(c, (int)field, value);
 	trial_put(leased ? &a->leased : &a->trial, field, value);
 	a->lease = leased ? c->config.asking.lease_cycles : a->lease;
 	return true;
@@ -115,13 +130,20 @@ static void lease_step(struct asking *a)
 
 /* -- What a person sets ---------------------------------------------------- */
 
+/* It keeps what it was asked for, and nobody knows what it had. */
+static bool is_unknown(const struct cycle *c, int i)
+{
+	return c->config.asking.field[i].stays && is_lent(&c->asking, i) &&
+	       isnan(c->asking.before[i]);
+}
+
 /* The fields that nobody has set yet, a bit each. */
 static uint32_t unset(const struct cycle *c)
 {
 	uint32_t fields = 0;
 
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
-		if (isnan(c->out.pulse[i]) ? c->asking.unknown >> i & 1 :
+		if (isnan(c->out.pulse[i]) ? is_unknown(c, i) :
 		    c->config.asking.field[i].by_hand &&
 		    c->out.pulse[i] != c->asking.hand[i])
 			fields |= 1u << i;
@@ -152,11 +174,12 @@ static void hear_hand(struct cycle *c)
 	a->path = c->out.path;
 	if (!a->stands || !state_duty[c->state].running)
 		return;
-	a->unknown &= ~a->stands;
-	a->stands = 0;
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		if (!isnan(c->out.pulse[i]))
 			a->hand[i] = c->out.pulse[i];
+		else
+			a->lent &= ~(a->stands & 1u << i);
+	a->stands = 0;
 }
 
 /* -- What the generator is asked for --------------------------------------- */
@@ -186,6 +209,15 @@ static bool is_dark(const struct cycle *c)
 	return c->asking.dark > 0 && c->asking.dark >= least;
 }
 
+/* The off time of a step against arcs; without one, @off_us. */
+static double against_arcs(const struct cycle *c, double off_us)
+{
+	const double longer_us = asking_off_us(c, arcing_off_us(c));
+
+	return isnan(longer_us) || is_tried(&c->asking, INTERP_TECH_OFF_US) ?
+	       off_us : longer_us;
+}
+
 static void ask(struct cycle *c)
 {
 	struct asking *a = &c->asking;
@@ -195,16 +227,13 @@ static void ask(struct cycle *c)
 		if (!is_dark(c))
 			return;
 		for (int i = 0; i < INTERP_NGENERATOR; i++) {
+			lend(c, i, wanted(c, i));
 			a->now[i] = a->place[i] = wanted(c, i);
-			if (!isnan(c->out.pulse[i]))
-				a->unknown &= ~(1u << i);
 		}
 		a->needed = ++a->version;
 		a->age = 0;
 	}
-	if (is_lent(c, INTERP_TECH_OFF_US))
-		return;
-	off_us = asking_off_us(c, arcing_off_us(c));
+	off_us = against_arcs(c, a->place[INTERP_TECH_OFF_US]);
 	if (same(off_us, a->now[INTERP_TECH_OFF_US]))
 		return;
 	a->now[INTERP_TECH_OFF_US] = off_us;
@@ -227,36 +256,44 @@ static void ask_freely(struct cycle *c)
 	struct asking *a = &c->asking;
 	double now[INTERP_NGENERATOR];
 
-	memcpy(now, c->out.pulse, sizeof(now));
-	now[INTERP_TECH_OFF_US] = arcing_off_us(c);
-	for (int i = 0; a->lent && i < INTERP_NGENERATOR; i++)
-		now[i] = is_lent(c, i) ? asked_for(c, i) : now[i];
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		now[i] = asked_for(c, i);
+	now[INTERP_TECH_OFF_US] = against_arcs(c, now[INTERP_TECH_OFF_US]);
 	/* Hardly ever is there anything new. */
 	if (memcmp(now, a->now, sizeof(now)) == 0)
 		return;
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
 		if (same(a->now[i], now[i]))
 			continue;
+		lend(c, i, now[i]);
 		a->now[i] = now[i];
 		a->version++;
 		a->age = 0;
 	}
 }
 
-/* Until it has what it was asked for, it may have what it had. */
-static void bound_ignition(struct asking *a)
+/* Until it has what it is asked for, it may have what it had.  What it is not
+ * asked for is as the machine file says, or not known. */
+static void bound_ignition(struct cycle *c)
 {
-	const double now = a->now[INTERP_TECH_IGNITION_V];
+	const double asked = c->asking.now[INTERP_TECH_IGNITION_V];
+	const double own = c->gap.ignition_v > 0 ? c->gap.ignition_v :
+						   (double)INFINITY;
+	const double now = isnan(asked) ? own : asked;
 
-	if (a->has || isnan(now) || !(a->ignition_v > now))
-		a->ignition_v = now;
+	if (c->asking.has || c->asking.ignition_v < now)
+		c->asking.ignition_v = now;
 }
 
 /* It has it again, and keeps it. */
 static void give_back(struct cycle *c)
 {
-	if (c->asking.has && !c->loaded)
-		c->asking.lent = tried_fields(&c->asking);
+	struct asking *a = &c->asking;
+
+	for (int i = 0; a->has && !c->loaded && i < INTERP_NGENERATOR; i++)
+		if (isnan(c->out.pulse[i]) && !is_tried(a, i) &&
+		    !is_unknown(c, i))
+			a->lent &= ~(1u << i);
 }
 
 void asking_step(struct cycle *c, const struct io_inputs *in)
@@ -269,7 +306,7 @@ void asking_step(struct cycle *c, const struct io_inputs *in)
 	if (!c->config.asking.limited) {
 		ask_freely(c);
 		a->has = is_confirmed(c, a->version);
-		bound_ignition(a);
+		bound_ignition(c);
 		give_back(c);
 		return;
 	}
@@ -281,8 +318,23 @@ void asking_step(struct cycle *c, const struct io_inputs *in)
 	a->in_force = is_the_places(c) && !unset(c) &&
 		      is_confirmed(c, a->needed);
 	a->has = is_the_places(c) && is_confirmed(c, a->version);
-	bound_ignition(a);
+	bound_ignition(c);
 	give_back(c);
+}
+
+void asking_restore(struct cycle *c)
+{
+	const struct interp_program *p = &c->cursor.p;
+	struct asking *a = &c->asking;
+
+	for (int i = 0; i < INTERP_NGENERATOR; i++) {
+		for (uint32_t k = 0; k < p->head->nconds; k++)
+			a->lent |= (uint32_t)!isnan(p->conds[k].tech.v[i]) << i;
+		a->before[i] = (double)NAN;
+	}
+	for (uint32_t k = 0; k < c->conditions.nsets; k++)
+		if (c->conditions.set[k].field < INTERP_NGENERATOR)
+			a->lent |= 1u << c->conditions.set[k].field;
 }
 
 bool asking_waits(const struct cycle *c)

@@ -14,9 +14,12 @@
  * that follows says that it is set.
  *
  * Without a job, values may be asked for to try the generator.  A job takes
- * them back, and so does the end of a lease.  A value that nobody asks for then
- * is the one that the generator told before it was tried: it would keep the
- * last one.  If it did not tell it, a person must set it.
+ * them back, and so does the end of a lease.
+ *
+ * A generator on registers keeps the last value that it was asked for.  Where
+ * nobody asks any more (a condition that does not give it, a set that was taken
+ * back, the end of a trial), it is asked for the one that it told before.  If
+ * it did not tell it, a person must set it before the sparks.
  *
  * Threads: RT-safe.
  */
@@ -58,19 +61,21 @@ struct asking {
 	uint32_t path;			/* io_outputs.path of these */
 	struct asking_trial trial, leased;	/* this one goes first ... */
 	uint64_t lease;			/* ... and ends in so many periods */
-	uint32_t lent;			/* a bit of each that was tried, and
-					 * is not again ... */
-	double before[INTERP_NGENERATOR];	/* ... as it was told */
-	uint32_t unknown;		/* ... or was not: a person must set it
-					 * for one who does not give it */
+	uint32_t lent;			/* a bit of each that was asked for
+					 * ... */
+	double before[INTERP_NGENERATOR];	/* ... and what it had by then;
+					 * NAN: nobody knows */
 	struct io_generator says;	/* in the last period */
 	bool has;			/* the generator has all of `now` */
-	double ignition_v;		/* the highest that it may have; NAN:
-					 * its own */
+	double ignition_v;		/* the highest that it may have */
 };
 
 /** asking_init() - nothing is asked yet. */
 void asking_init(struct asking *a);
+
+/** asking_restore() - the job that is loaded was begun before a crash, and the
+ *  generator may have any of its values. */
+void asking_restore(struct cycle *c);
 
 /** asking_step() - once a period, behind the walk and before the outputs. */
 void asking_step(struct cycle *c, const struct io_inputs *in);

@@ -37,16 +37,9 @@ double gap_window_low_v(const struct cycle *c)
 /* -- Can it be true? ------------------------------------------------------- */
 
 /* A reading is of the pulses that were, not of those of the place. */
-static double ignition_v(const struct cycle *c)
-{
-	const double asked = c->asking.ignition_v;
-
-	return asked > 0 ? asked : c->gap.ignition_v;
-}
-
 static bool voltage_ok(const struct cycle *c, const struct io_inputs *in)
 {
-	const double most = ABOVE_MAX * ignition_v(c);
+	const double most = ABOVE_MAX * c->asking.ignition_v;
 
 	return in->gap_valid && isfinite(in->gap_v) &&
 	       in->gap_v >= -BELOW_MAX_V && (most <= 0 || in->gap_v <= most);
