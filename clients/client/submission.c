@@ -32,6 +32,8 @@ struct submission {
 	double *sent_s;			/* when it was sent; 0: not yet, < 0:
 					 * acked */
 	int first;			/* all chunks before it are acked */
+	int64_t boot;			/* of the service they were sent to */
+	bool out;			/* the last one was sent */
 	double silent_s, heard_s, whole_s, reminded_s;
 	struct talk_ack verdict;
 	char *reason, *body;
@@ -75,7 +77,10 @@ static bool send_chunk(struct submission *j, int i)
 		.size = left < TALK_CHUNK_MAX ? (int)left : TALK_CHUNK_MAX,
 	};
 
-	return talk_send_chunk(j->talk, &c);
+	if (!talk_send_chunk(j->talk, &c))
+		return false;
+	j->out |= i == j->chunks - 1;
+	return true;
 }
 
 /* Send all chunks of the window that are not acked; it has WINDOW chunks from
@@ -91,6 +96,19 @@ static void send_window(struct submission *j, double now_s)
 			return;
 		j->sent_s[i] = now_s;
 	}
+}
+
+/* One that was started anew has not heard of any chunk. */
+static void look_for_new_start(struct submission *j)
+{
+	const int64_t boot = talk_boot(j->talk);
+
+	if (!boot || boot == j->boot)
+		return;
+	j->boot = boot;
+	memset(j->sent_s, 0, (size_t)j->chunks * sizeof(*j->sent_s));
+	j->acked = j->first = 0;
+	j->whole_s = 0;
 }
 
 /* All chunks have arrived.  Ask what happened to the job, in case the answer
@@ -124,6 +142,7 @@ int submission_step(struct submission *j)
 		return 1;
 	if (waited_enough(j, now_s))
 		return -ETIMEDOUT;
+	look_for_new_start(j);
 	if (j->acked < j->chunks)
 		send_window(j, now_s);
 	else
@@ -208,6 +227,11 @@ int submission_progress(const struct submission *j, int *ret_arrived)
 {
 	*ret_arrived = j->acked;
 	return j->chunks;
+}
+
+bool submission_is_out(const struct submission *j)
+{
+	return j->out;
 }
 
 void submission_end(struct submission *j)

@@ -77,6 +77,12 @@ const char *submission_name(const struct submission *j);
 int submission_progress(const struct submission *j, int *ret_arrived);
 
 /**
+ * submission_is_out() - every chunk has gone out: from here on the service may
+ * have the job, also if nothing is heard of it any more.
+ */
+bool submission_is_out(const struct submission *j);
+
+/**
  * submission_end() - give back the memory; @j may be NULL.  edmd-jobs forgets a
  * job that was not sent whole.
  */

@@ -303,7 +303,7 @@ static void hear_ack(void *arg, const struct seal *s, const uint8_t *key,
 		if (s->boot == t->boot)
 			t->ahead_us = s->count - clock_us(CLOCK_MONOTONIC);
 		question_end(q, 0, a);
-	} else {
+	} else if (s->boot == t->boot) {
 		hear_listeners(t, a);
 	}
 }
@@ -412,6 +412,11 @@ static int key_take(struct talk *t, const char *path, char *said)
 	return -EINVAL;
 }
 
+const char *talk_machine(const struct talk_options *o)
+{
+	return o->machine ? o->machine : "edm";
+}
+
 int talk_open(struct talk **ret, const struct talk_options *o,
 	      char said[TALK_SAID_MAX])
 {
@@ -420,13 +425,13 @@ int talk_open(struct talk **ret, const struct talk_options *o,
 
 	snprintf(said, TALK_SAID_MAX, "out of memory");
 	if (err == 0) {
-		t->is_here = !o->url;
+		t->is_here = !o->url && !o->carrier;
 		snprintf(t->machine, sizeof(t->machine), "%s",
-			 o->machine ? o->machine : "edm");
+			 talk_machine(o));
 		snprintf(t->client, sizeof(t->client), "%.20s-%d-%08x%08x",
 			 o->program ? o->program : "client", (int)getpid(),
 			 randombytes_random(), randombytes_random());
-		err = talk_way_open(&t->way, t->machine, o->url, said);
+		err = talk_way_open(&t->way, o, said);
 	}
 	/* Where there is no network, no service has made a key yet. */
 	if (err == 0)
@@ -676,6 +681,11 @@ int64_t talk_numbers(struct talk *t, int n)
 
 	t->seq += n;
 	return first;
+}
+
+int64_t talk_boot(const struct talk *t)
+{
+	return t->known ? t->boot : 0;
 }
 
 int talk_on_acks(struct talk *t, int64_t first, int n,

@@ -27,6 +27,7 @@
 #include "status_fields.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #define TALK_URL	"udpm://239.255.76.67:7667?ttl=0"
@@ -40,12 +41,24 @@
 					 * while an act is under way */
 
 struct talk;
+struct udpm_packet;
+
+/* Another way to a machine than those of this host, such as the fleet's; lent
+ * until talk_close(). */
+struct talk_carrier {
+	int fd;				/* readable when take() has something */
+	void (*send)(void *arg, const char *channel, const void *data,
+		     size_t size);
+	bool (*take)(void *arg, struct udpm_packet *ret);
+	void *arg;
+};
 
 struct talk_options {
 	const char *machine;		/* NULL: "edm" */
 	const char *url;		/* of LCM; NULL: the socket of this
 					 * host; if there is none,
 					 * talk_default_url() */
+	const struct talk_carrier *carrier;	/* NULL: none */
 	const char *key;		/* key file; NULL: that of $EDM_KEY,
 					 * else the host's own */
 	const char *program;		/* our name; NULL: "client" */
@@ -211,6 +224,12 @@ int talk_on_acks(struct talk *t, int64_t first, int n,
 		 void (*fn)(void *arg, const struct talk_ack *a), void *arg);
 /** talk_off_acks() - nobody gets them any more. */
 void talk_off_acks(struct talk *t, int64_t first);
+
+/**
+ * talk_boot() - the service's start that is spoken with; 0: none yet.  A new
+ * one has forgotten what was not sent whole.
+ */
+int64_t talk_boot(const struct talk *t);
 
 /**
  * talk_send_chunk() - Return: false: not yet, because the service has not

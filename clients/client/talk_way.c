@@ -15,6 +15,7 @@
 #define AGAIN_S		0.1		/* between two tries to connect */
 
 struct talk_way {
+	const struct talk_carrier *by;	/* NULL: socket or multicast */
 	int epoll;
 	struct sockaddr_un at;		/* "": only by multicast */
 	int local;			/* -1: not connected */
@@ -81,18 +82,19 @@ static int join(struct talk_way *w, const char *url, bool named, char *said)
 	return -ENETUNREACH;
 }
 
-static int find(struct talk_way *w, const char *machine, const char *url,
-		char *said)
+static int find(struct talk_way *w, const struct talk_options *o, char *said)
 {
-	int err = url ? -ENOENT : places_address(&w->at, machine, "jobs");
+	const char *url = o->url;
+	int err = url ? -ENOENT :
+			places_address(&w->at, talk_machine(o), "jobs");
 
 	if (err == 0)
 		err = connect_local(w);
 	return err < 0 ? join(w, url ? url : talk_default_url(), url, said) : 0;
 }
 
-int talk_way_open(struct talk_way **ret, const char *machine, const char *url,
-	     char said[TALK_SAID_MAX])
+int talk_way_open(struct talk_way **ret, const struct talk_options *o,
+		  char said[TALK_SAID_MAX])
 {
 	struct talk_way *w = calloc(1, sizeof(*w));
 	int err;
@@ -101,7 +103,9 @@ int talk_way_open(struct talk_way **ret, const char *machine, const char *url,
 		return -ENOMEM;
 	w->local = -1;
 	w->epoll = epoll_create1(EPOLL_CLOEXEC);
-	err = w->epoll < 0 ? -errno : find(w, machine, url, said);
+	w->by = o->carrier;
+	err = w->epoll < 0 ? -errno :
+	      w->by ? watch(w, w->by->fd) : find(w, o, said);
 	if (err < 0) {
 		talk_way_close(w);
 		return err;
@@ -130,7 +134,9 @@ int talk_way_fd(const struct talk_way *w)
 void talk_way_send(struct talk_way *w, const char *channel, const void *data,
 	      size_t size)
 {
-	if (w->local >= 0)
+	if (w->by)
+		w->by->send(w->by->arg, channel, data, size);
+	else if (w->local >= 0)
 		local_put(w->local, channel, data, size);
 	else if (w->net)
 		udpm_send(w->net, channel, data, size);
@@ -140,6 +146,8 @@ bool talk_way_take(struct talk_way *w, struct udpm_packet *ret)
 {
 	int got;
 
+	if (w->by)
+		return w->by->take(w->by->arg, ret);
 	if (w->local < 0)
 		return w->net && udpm_take(w->net, ret);
 	got = local_get(w->local, w->packet, ret);

@@ -2,11 +2,14 @@
 /*
  * talk_way.h - how packets go between a client and edmd-jobs
  *
- * On the machine's own host that is the socket of edmd-jobs (local.h), which
- * needs no network.  Multicast is for other hosts: it is used if an URL is
- * named, or as long as there is no such socket.
+ * They go by the carrier that is given.  Without one: on the machine's own host
+ * by the socket of edmd-jobs (local.h), which needs no network.  Multicast is
+ * for other hosts: it is used if an URL is named, or as long as there is no
+ * such socket.
  *
- * Private to this folder.  Threads: that of the struct talk.
+ * For talk.c, and for a program that hands on what others have signed.
+ *
+ * Threads: one.
  */
 #ifndef CLIENT_TALK_WAY_H
 #define CLIENT_TALK_WAY_H
@@ -16,14 +19,17 @@
 
 struct talk_way;
 
+/** talk_machine() - of @o, or the usual one. */
+const char *talk_machine(const struct talk_options *o);
+
 /**
- * talk_way_open() - @url: NULL: the socket, or else TALK_URL.
+ * talk_way_open() - @o: machine, url and carrier.
  *
  * Return: 0; -EDESTADDRREQ: no such URL; -ENETUNREACH: there is no way, and
  * @said tells why; else -errno.
  */
-int talk_way_open(struct talk_way **ret, const char *machine, const char *url,
-	     char said[TALK_SAID_MAX]);
+int talk_way_open(struct talk_way **ret, const struct talk_options *o,
+		  char said[TALK_SAID_MAX]);
 
 /** talk_way_close() - @w may be NULL. */
 void talk_way_close(struct talk_way *w);

@@ -5,7 +5,7 @@
 #include "cmdline.h"
 #include "plain.h"
 #include "submission.h"
-#include "grow.h"
+#include "submission_file.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -16,35 +16,6 @@
 
 #define SHOW_CHUNKS	64		/* a smaller job is sent before progress
 					 * could be seen */
-
-struct text {
-	char *bytes;
-	size_t size;
-};
-
-/* Return: the exit code. */
-static int read_text(const char *path, struct text *t)
-{
-	bool std = strcmp(path, "-") == 0;
-	FILE *f = std ? stdin : fopen(path, "rbe");
-	int err;
-
-	if (!f) {
-		fprintf(stderr, "edmctl: %s: %s; a file of NC code, or - for "
-			"standard input\n", path, strerror(errno));
-		return EX_NOINPUT;
-	}
-	err = grow_read(f, SUBMISSION_BYTES_MAX, &t->bytes, &t->size);
-	if (!std)
-		fclose(f);
-	if (err == 0)
-		return 0;
-	fprintf(stderr, "edmctl: %s: %s; a file of NC code of at most 64 "
-		"MiB\n", path, strerror(-err));
-	return err == -EISDIR ? EX_NOINPUT :
-	       err == -EFBIG ? EX_DATAERR :
-	       err == -ENOMEM ? EX_SOFTWARE : EX_IOERR;
-}
 
 static void show_progress(const struct ctl *c, const struct submission *j,
 			  struct line *l)
@@ -81,51 +52,15 @@ static int job_run(const struct ctl *c, struct submission *j)
 	return err < 0 ? err : err ? 0 : -EINTR;
 }
 
-/* The service says NAME:LINE:COLUMN, but the sender knows the text as FILE. */
-static void print_refusal(const struct ctl *c, const struct talk_ack *a)
-{
-	json_t *j = json_loads(a->body, 0, NULL);
-	const char *found, *wanted;
-	char what[512], want[512];
-	int line, column;
-
-	if (j && json_unpack(j, "{s:i,s:i,s:s,s:s}", "line", &line, "column",
-			     &column, "found", &found, "wanted",
-			     &wanted) == 0 && line > 0) {
-		plain_copy(what, sizeof(what), found);
-		plain_copy(want, sizeof(want), wanted);
-		fprintf(stderr, "%s:%d:%d: error: %s; %s\n", c->arg, line,
-			column, what, want);
-	} else {
-		fprintf(stderr, "edmctl: %s: %s\n", c->arg, a->reason);
-	}
-	json_decref(j);
-}
-
-static void print_notes(const struct talk_ack *a)
-{
-	json_t *j = json_loads(a->body, 0, NULL), *note;
-	char text[512];
-	size_t i;
-
-	json_array_foreach(json_object_get(j, "notes"), i, note) {
-		if (!json_is_string(note))
-			continue;
-		plain_copy(text, sizeof(text), json_string_value(note));
-		fprintf(stderr, "%s\n", text);
-	}
-	json_decref(j);
-}
-
 static int print_outcome(const struct ctl *c, const struct submission *j)
 {
 	const struct talk_ack *a = submission_verdict(j);
 
 	if (a->code) {
-		print_refusal(c, a);
+		submission_print_refusal("edmctl", c->arg, a);
 		return a->code;
 	}
-	print_notes(a);
+	submission_print_notes(a);
 	if (c->wait && c->json)
 		return 0;
 	if (c->json)
@@ -164,24 +99,16 @@ static void print_forecast(const struct ctl *c, const struct awaited *a)
 				  "queue tells it later");
 }
 
-static const char *name_of(const struct ctl *c)
-{
-	const char *slash = strrchr(c->arg, '/');
-
-	if (c->name)
-		return c->name;
-	return strcmp(c->arg, "-") == 0 ? "stdin" : slash ? slash + 1 : c->arg;
-}
-
-static int send_text(struct ctl *c, const struct text *t,
+static int send_text(struct ctl *c, const struct submission_file *t,
 		     char id[TALK_WORD_MAX])
 {
 	char setting[INTERP_SETTING_MAX];
 	const struct submission_text x = {
 		.setting = cmdline_pairs(interp_set_name, c->set, setting,
 					 sizeof(setting)),
-		.id = c->id, .name = name_of(c), .text = t->bytes,
-		.bytes = t->size, .hold = c->hold, .from_line = c->from_line,
+		.id = c->id, .text = t->bytes, .bytes = t->size,
+		.name = c->name ? c->name : submission_file_name(c->arg),
+		.hold = c->hold, .from_line = c->from_line,
 		.from_mm = c->from_mm, .electrode = (int)c->electrode,
 		.silent_s = c->timeout_s,
 	};
@@ -214,14 +141,14 @@ static int send_text(struct ctl *c, const struct text *t,
 
 int ctl_submit(struct ctl *c)
 {
-	struct text t = { .size = 0 };
+	struct submission_file t = { .size = 0 };
 	char id[TALK_WORD_MAX];
 	int err;
 
 	if (c->from_line && c->from_mm > 0)
 		return cmdline_refuse("edmctl", "--from-line", "with "
 				      "--from-place", "one of them");
-	err = read_text(c->arg, &t);
+	err = submission_read("edmctl", c->arg, &t);
 
 	if (err == 0)
 		err = send_text(c, &t, id);
