@@ -277,10 +277,12 @@ $(B)/messages/edm_lcm.o: $(B)/messages/lcm.stamp
 	$(Q)$(call whole,$(CC) -std=gnu11 -g $(OPT) -w $(SANFLAGS) -I$(@D) \
 		-c $(@D)/edm_lcm_all.c -o)
 
+# Without -t a reader in the network whose type differs ends the process in which
+# the library looks at that type.
 $(B)/messages/edm.c: messages/edm.idl
 	$(call say,IDLC,$<)
 	@mkdir -p $(@D)/new
-	$(Q)idlc -o $(@D)/new $<
+	$(Q)idlc -t -o $(@D)/new $<
 	$(Q)mv $(@D)/new/edm.h $(@D)
 	$(Q)mv $(@D)/new/edm.c $(@D)
 
@@ -331,11 +333,11 @@ $(B)/edmd-jobs: $(call obj,$(JOBS) $(VALUES) $(LOGGER)) $(SIGN_O) $(SHM_O) $(VIR
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -llcm -lsodium -ljansson -lz -lncursesw -ltinfo $(LIBGPIOD) -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c reports.c watch.c topic.c tool.c) $(CLIENT)) $(SIGN_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(DDS_O) $(CORE_A) $(COMMON_A)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c post.c relay.c reports.c watch.c topic.c tool.c) $(CLIENT)) $(SIGN_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(DDS_O) $(CORE_A) $(COMMON_A)
 	$(call link,-lddsc -linih -llcm -lsodium -ljansson -lm)
 
-$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c hall.c ledger.c sink.c table.c topic.c tool.c)) $(DDS_O) $(COMMON_A)
-	$(call link,-lddsc -ljansson -lsqlite3 -lm)
+$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c dispatch.c hall.c ledger.c post.c sink.c table.c topic.c tool.c) $(CLIENT)) $(SIGN_O) $(LCM_O) $(DDS_O) $(COMMON_A)
+	$(call link,-lddsc -ljansson -lsqlite3 -llcm -lsodium -lm)
 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(VALUES) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)
 	$(call link,-lwebsockets -lssl -linih -llcm -lsodium -ljansson -lsystemd -lm)

@@ -3,13 +3,14 @@
  * edm-dds - publishes the state of one machine to the fleet
  *
  * It reads edmd's shared memory and publishes an edm::MachineState at a fixed
- * rate.  It asks edmd-jobs for the jobs that have ended and for alarms.  It
- * only reads: nothing that comes over DDS reaches the machine.
+ * rate.  It asks edmd-jobs for the jobs that have ended and for alarms.  A job
+ * that is offered over DDS it hands on to edmd-jobs, which judges it.
  */
 #include "cmdline.h"
 #include "clocks.h"
 #include "config.h"
 #include "names.h"
+#include "relay.h"
 #include "reports.h"
 #include "tool.h"
 #include "topic.h"
@@ -41,7 +42,8 @@ struct bridge {
 	int64_t counted_ns;
 	uint32_t known;
 	struct reports reports;
-	sigset_t stops;
+	struct relay relay;
+	int epoll;
 	char host[sizeof(((edm_MachineState *)0)->host)];
 	char said[sizeof(((edm_MachineState *)0)->state)];
 };
@@ -124,12 +126,13 @@ static const struct cmdline table = {
 static int bridge_open(struct bridge *b, const struct options *o)
 {
 	char name[sizeof(TOPIC_DDS) + SHM_NAME_MAX];
+	int err;
 
 	watch_init(&b->watch, o->machine);
 	if (o->fault_words)
 		b->watch.fault_words = o->fault_words;
 	gethostname(b->host, sizeof(b->host) - 1);
-	tool_block_stops(&b->stops);
+	b->epoll = tool_block_stops();
 
 	snprintf(name, sizeof(name), TOPIC_DDS "%s", o->machine);
 	b->participant = tool_participant(table.program, o->domain, name);
@@ -141,14 +144,18 @@ static int bridge_open(struct bridge *b, const struct options *o)
 	b->writer = topic_writer_create(b->participant, TOPIC_STATE);
 	if (b->others < 0 || b->writer < 0)
 		return b->others < 0 ? b->others : b->writer;
-	return o->once ? 0 : reports_open(&b->reports, b->participant,
-					  o->machine, o->key);
+	if (o->once)
+		return 0;
+	err = relay_open(&b->relay, b->participant, o->machine, b->epoll);
+	return err < 0 ? err : reports_open(&b->reports, b->participant,
+					    o->machine, o->key);
 }
 
 /* Deleting the writer disposes of its instance, so readers see that it
  * leaves. */
 static void bridge_close(struct bridge *b)
 {
+	relay_close(&b->relay);
 	if (b->participant > 0)
 		dds_delete(b->participant);
 	reports_close(&b->reports);
@@ -228,15 +235,16 @@ static int publish(struct bridge *b)
 static bool wait_until(struct bridge *b, int64_t until_ns)
 {
 	int64_t left;
+	bool stop;
 
 	do {
+		relay_step(&b->relay);
 		reports_step(&b->reports);
 		left = until_ns - clock_ns(CLOCK_MONOTONIC);
-		if (tool_wait(&b->stops, left < 0 ? 0 : left < STEP_NS ? left :
-			      STEP_NS))
-			return true;
-	} while (left > STEP_NS);
-	return false;
+		stop = tool_wait(b->epoll, left < 0 ? 0 : left < STEP_NS ?
+				 left : STEP_NS);
+	} while (!stop && left > 0);
+	return stop;
 }
 
 static int run(struct bridge *b, double hz)

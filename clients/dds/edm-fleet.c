@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * edm-fleet - lists the machines that are heard over DDS, one line each; keeps
- * what they did, and tells it
+ * what they did, and tells it; gives a job to one of them
  *
  * For each picture what has come is taken: hall.c keeps the last sample of each
  * machine, and whether its writer is still there.
  */
 #include "cmdline.h"
+#include "dispatch.h"
 #include "hall.h"
 #include "ledger.h"
+#include "names.h"
 #include "sink.h"
 #include "standard.h"
 #include "table.h"
@@ -37,12 +39,14 @@ struct options {
 	bool today, week;
 	enum mode mode;
 	double wait_s, expect;
+	const char *machine, *keys, *id;
+	bool any, hold, start;
 	bool json;
 };
 
 struct fleet {
 	dds_entity_t participant;
-	sigset_t stops;
+	int epoll;			/* of signals to stop */
 	struct hall hall;
 	struct sink sink;
 	bool settled;			/* --once: nothing is new any more */
@@ -98,6 +102,19 @@ static const struct cmdline_row rows[] = {
 	  "report, alarms: of today (default)" },
 	{ "week", NULL, CMDLINE_FLAG, AT(week), .help =
 	  "report, alarms: of today and the six days before" },
+	{ "machine", "NAME", CMDLINE_WORD, AT(machine), .help =
+	  "submit: to this one" },
+	{ "any", NULL, CMDLINE_FLAG, AT(any), .help =
+	  "submit: to the first idle one that takes it" },
+	{ "hold", NULL, CMDLINE_FLAG, AT(hold), .help =
+	  "submit: the job waits for a start (default)" },
+	{ "start", NULL, CMDLINE_FLAG, AT(start), .help =
+	  "submit: it starts when those before it are done" },
+	{ "id", "ID", CMDLINE_WORD, AT(id), .help =
+	  "submit: id of the job, wants --machine (drawn)" },
+	{ "keys", "FOLDER", CMDLINE_WORD, AT(keys), .help =
+	  "submit: keys by which the machines know you, each\n"
+	  "MACHINE.key (/etc/edmd/fleet)" },
 	{ "json", NULL, CMDLINE_FLAG, AT(json), .help =
 	  "print each table as JSON, on one line" },
 };
@@ -105,7 +122,7 @@ static const struct cmdline_row rows[] = {
 
 static const struct cmdline table = {
 	.program = "edm-fleet", .row = rows,
-	.nrows = sizeof(rows) / sizeof(*rows), .column = 18, .args_max = 1,
+	.nrows = sizeof(rows) / sizeof(*rows), .column = 18, .args_max = 2,
 	.head =
 	"Usage: edm-fleet [options] [COMMAND]\n"
 	"List the machines heard over DDS.\n"
@@ -113,11 +130,13 @@ static const struct cmdline table = {
 	"  record          keep jobs, alarms and times in --database FILE\n"
 	"  report          hours, jobs and why machines stood, by machine\n"
 	"  alarms          alarms of all machines, newest first\n"
+	"  submit FILE     give a job to --machine NAME or to --any\n"
 	"\n",
 	.tail =
 	"\n"
 	"Exit code: 0 if all known machines were heard, or the\n"
-	"database was read, else 1.\n"
+	"database was read, or the job was given, else 1 or\n"
+	"as edmctl has it.\n"
 	"CYCLONEDDS_URI chooses the network interface and peers;\n"
 	"see docs/fleet.md.\n",
 };
@@ -179,7 +198,7 @@ static int run_once(struct fleet *f, const struct options *o)
 		f->settled = s - new_s >= o->wait_s;
 	} while (err == 0 && s < LONGEST * o->wait_s &&
 		 !(f->settled && (!f->hall.n || f->hall.n >= expected(f, o))) &&
-		 !tool_wait(&f->stops, 100 * MS));
+		 !tool_wait(f->epoll, 100 * MS));
 	if (tty)
 		standard_control(stderr, "\r\033[K");
 	if (err == 0 && !f->ledger)
@@ -203,7 +222,7 @@ static int run_watch(struct fleet *f, const struct options *o)
 			       "(Ctrl-C ends)\n\n", o->domain, f->hall.n);
 		}
 		print(f, o->json);
-	} while (!tool_wait(&f->stops, redraw ? LOOK_NS : LINE_NS));
+	} while (!tool_wait(f->epoll, redraw ? LOOK_NS : LINE_NS));
 	return 0;
 }
 
@@ -280,7 +299,7 @@ static int run_record(struct fleet *f, const struct options *o)
 		return err;
 	err = fleet_open(f, o->domain);
 	while (err == 0 && !stop) {
-		stop = tool_wait(&f->stops, said ? LINE_NS : LOOK_NS);
+		stop = tool_wait(f->epoll, said ? LINE_NS : LOOK_NS);
 		err = hall_look(&f->hall);
 		if (err == 0)
 			say_disk(f, sink_step(&f->sink, &f->hall, stop),
@@ -319,8 +338,53 @@ static int run_told(struct fleet *f, const struct options *o,
 	return code;
 }
 
-static int run(struct fleet *f, const struct options *o, const char *command)
+/* -- What is to be done ---------------------------------------------------- */
+
+static int run_submit(struct fleet *f, const struct options *o,
+		      const char *path)
 {
+	const struct dispatch_options x = {
+		.path = path, .machine = o->machine, .keys = o->keys,
+		.id = o->id, .start = o->start, .json = o->json,
+		.wait_s = o->wait_s, .expect = (size_t)o->expect,
+	};
+	int err;
+
+	if (!path || !o->machine == !o->any)
+		return cmdline_refuse("edm-fleet", "submit", path ? path : "",
+				      "submit FILE and either --machine NAME "
+				      "or --any");
+	if (o->machine && !names_machine_ok(o->machine))
+		return cmdline_refuse("edm-fleet", "--machine", o->machine,
+				      NAMES_MACHINE_WANTED);
+	if (o->hold && o->start)
+		return cmdline_refuse("edm-fleet", "--hold", "with --start",
+				      "one of them");
+	if (o->id && o->any)
+		return cmdline_refuse("edm-fleet", "--id", o->id,
+				      "--machine NAME with it: only one "
+				      "machine knows whether it has this id");
+	err = fleet_open(f, o->domain);
+	if (err == 0)
+		err = dispatch_run(f->participant, &f->hall, &x);
+	else
+		err = tool_fail(table.program, o->domain, err);
+	if (f->participant > 0)
+		dds_delete(f->participant);
+	hall_close(&f->hall);
+	return err;
+}
+
+static int run(struct fleet *f, const struct options *o, char **arg)
+{
+	const char *command = arg[0];
+
+	if (command && !strcmp(command, "submit"))
+		return run_submit(f, o, arg[1]);
+	if (command && arg[1])
+		return cmdline_refuse("edm-fleet", command, arg[1],
+				      "nothing after it; only submit takes a "
+				      "FILE");
 	if (!command)
 		return run_list(f, o);
 	if (!strcmp(command, "record"))
@@ -330,12 +394,12 @@ static int run(struct fleet *f, const struct options *o, const char *command)
 	if (!strcmp(command, "alarms"))
 		return run_told(f, o, ledger_print_alarms);
 	return cmdline_refuse("edm-fleet", "command", command,
-			      "record, report, alarms, or nothing");
+			      "record, report, alarms, submit FILE, or nothing");
 }
 
 int main(int argc, char **argv)
 {
-	struct options o = { .wait_s = 2 };
+	struct options o = { .wait_s = 2, .keys = "/etc/edmd/fleet" };
 	static struct fleet f;
 	struct cmdline_given given;
 	int err = cmdline_take(&table, &o, argc, argv, &given);
@@ -343,8 +407,8 @@ int main(int argc, char **argv)
 	if (err >= 0)
 		return err;
 	/* The wait between two pictures takes them. */
-	tool_block_stops(&f.stops);
-	err = run(&f, &o, given.first < argc ? argv[given.first] : NULL);
+	f.epoll = tool_block_stops();
+	err = run(&f, &o, &argv[given.first]);
 	ledger_close(f.ledger);
 	return err;
 }

@@ -7,10 +7,15 @@
 
 #include "dds/ddsrt/log.h"
 
+#include <poll.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <sys/epoll.h>
+#include <sys/signalfd.h>
 #include <sysexits.h>
 #include <time.h>
+#include <unistd.h>
 
 #define NS	1000000000LL
 
@@ -71,17 +76,35 @@ dds_entity_t tool_participant(const char *program, dds_domainid_t domain,
 	return participant;
 }
 
-void tool_block_stops(sigset_t *ret)
+static int stop_fd;
+
+int tool_block_stops(void)
 {
-	sigemptyset(ret);
-	sigaddset(ret, SIGINT);
-	sigaddset(ret, SIGTERM);
-	sigprocmask(SIG_BLOCK, ret, NULL);
+	const int epoll = epoll_create1(EPOLL_CLOEXEC);
+	sigset_t stops;
+
+	sigemptyset(&stops);
+	sigaddset(&stops, SIGINT);
+	sigaddset(&stops, SIGTERM);
+	sigprocmask(SIG_BLOCK, &stops, NULL);
+	stop_fd = signalfd(-1, &stops, SFD_CLOEXEC | SFD_NONBLOCK);
+	tool_watch(epoll, stop_fd);
+	return epoll;
 }
 
-bool tool_wait(const sigset_t *stops, int64_t ns)
+void tool_watch(int epoll, int fd)
+{
+	struct epoll_event e = { .events = EPOLLIN };
+
+	epoll_ctl(epoll, EPOLL_CTL_ADD, fd, &e);
+}
+
+bool tool_wait(int epoll, int64_t ns)
 {
 	const struct timespec t = { ns / NS, ns % NS };
+	struct pollfd p = { .fd = epoll, .events = POLLIN };
+	struct signalfd_siginfo stop;
 
-	return sigtimedwait(stops, NULL, &t) > 0;
+	ppoll(&p, 1, &t, NULL);
+	return read(stop_fd, &stop, sizeof(stop)) == sizeof(stop);
 }

@@ -9,7 +9,6 @@
 
 #include "dds/dds.h"
 
-#include <signal.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -38,14 +37,17 @@ dds_entity_t tool_participant(const char *program, dds_domainid_t domain,
 
 /**
  * tool_block_stops() - block SIGINT and SIGTERM in every thread from now on, so
- * that tool_wait() takes them.
+ * that tool_wait() takes them.  Return: an epoll for it, or -1.
  */
-void tool_block_stops(sigset_t *ret);
+int tool_block_stops(void);
+
+/** tool_watch() - @fd ends tool_wait() when it is readable. */
+void tool_watch(int epoll, int fd);
 
 /**
- * tool_wait() - Return: true if it was told to stop within @ns (not less than
- * 0).
+ * tool_wait() - for @ns (not less than 0), or until a watched descriptor is
+ * readable.  Return: true if it was told to stop.
  */
-bool tool_wait(const sigset_t *stops, int64_t ns);
+bool tool_wait(int epoll, int64_t ns);
 
 #endif /* DDS_TOOL_H */

@@ -11,27 +11,38 @@
 static const struct topic_row {
 	const char *name;
 	const dds_topic_descriptor_t *type;
+	dds_durability_kind_t kept;
+	int32_t written, read;		/* samples of an instance that count */
 } topics[TOPIC_NTOPICS] = {
-	[TOPIC_STATE] = { "EDM_MachineState", &edm_MachineState_desc },
-	[TOPIC_REPORT] = { "EDM_JobReport", &edm_JobReport_desc },
-	[TOPIC_ALARM] = { "EDM_Alarm", &edm_Alarm_desc },
+	/* Room for what two writers of one machine say between two looks, so
+	 * that both are seen. */
+	[TOPIC_STATE] = { "EDM_MachineState", &edm_MachineState_desc,
+			  DDS_DURABILITY_TRANSIENT_LOCAL, 1, 32 },
+	/* The writer takes back what is older than a day: reports.c. */
+	[TOPIC_REPORT] = { "EDM_JobReport", &edm_JobReport_desc,
+			   DDS_DURABILITY_TRANSIENT_LOCAL, 1, 1 },
+	[TOPIC_ALARM] = { "EDM_Alarm", &edm_Alarm_desc,
+			  DDS_DURABILITY_TRANSIENT_LOCAL, 1, 1 },
+	/* Good for a second; who sent it says it again: post.h. */
+	[TOPIC_OFFER] = { "EDM_JobOffer", &edm_SignedPacket_desc,
+			  DDS_DURABILITY_VOLATILE, 32, 128 },
+	[TOPIC_ANSWER] = { "EDM_JobAnswer", &edm_SignedPacket_desc,
+			   DDS_DURABILITY_VOLATILE, 32, 128 },
 };
 
-/* Of each instance only the last counts.  The writer takes back reports and
- * alarms that are older than a day: reports.c. */
-static dds_qos_t *qos_create(void)
+static dds_qos_t *qos_create(enum topic which, int32_t samples)
 {
 	dds_qos_t *qos = dds_create_qos();
 
 	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-	dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
-	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
+	dds_qset_durability(qos, topics[which].kept);
+	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, samples);
 	return qos;
 }
 
-static dds_entity_t create(dds_entity_t participant, enum topic which)
+static dds_entity_t create(dds_entity_t owner, enum topic which)
 {
-	return dds_create_topic(participant, topics[which].type,
+	return dds_create_topic(dds_get_participant(owner), topics[which].type,
 				topics[which].name, NULL, NULL);
 }
 
@@ -39,10 +50,10 @@ static dds_entity_t create(dds_entity_t participant, enum topic which)
  * A state is manual by topic: only a written sample is a sign of life.  So a
  * writer that hangs is noticed in the same way as one that died.
  */
-dds_entity_t topic_writer_create(dds_entity_t participant, enum topic which)
+dds_entity_t topic_writer_create(dds_entity_t owner, enum topic which)
 {
-	const dds_entity_t topic = create(participant, which);
-	dds_qos_t *qos = qos_create();
+	const dds_entity_t topic = create(owner, which);
+	dds_qos_t *qos = qos_create(which, topics[which].written);
 	dds_entity_t writer;
 
 	if (which == TOPIC_STATE) {
@@ -52,26 +63,20 @@ dds_entity_t topic_writer_create(dds_entity_t participant, enum topic which)
 	}
 	dds_qset_writer_data_lifecycle(qos, which == TOPIC_STATE);
 	writer = topic < 0 ? topic :
-			     dds_create_writer(participant, topic, qos, NULL);
+			     dds_create_writer(owner, topic, qos, NULL);
 	dds_delete_qos(qos);
 	return writer;
 }
 
-/*
- * A reader must not ask for a deadline: it would not match a slower publisher.
- * It has room for what two writers of one machine say between two looks, so
- * that both are seen.
- */
-dds_entity_t topic_reader_create(dds_entity_t participant, enum topic which)
+/* A reader must not ask for a deadline: it would not match a slower
+ * publisher. */
+dds_entity_t topic_reader_create(dds_entity_t owner, enum topic which)
 {
-	const dds_entity_t topic = create(participant, which);
-	dds_qos_t *qos = qos_create();
-	dds_entity_t reader;
+	const dds_entity_t topic = create(owner, which);
+	dds_qos_t *qos = qos_create(which, topics[which].read);
+	const dds_entity_t reader =
+		topic < 0 ? topic : dds_create_reader(owner, topic, qos, NULL);
 
-	if (which == TOPIC_STATE)
-		dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 32);
-	reader = topic < 0 ? topic :
-			     dds_create_reader(participant, topic, qos, NULL);
 	dds_delete_qos(qos);
 	return reader;
 }

@@ -13,7 +13,10 @@
 #include "dds/dds.h"
 #include "edm.h"
 
-enum topic { TOPIC_STATE, TOPIC_REPORT, TOPIC_ALARM, TOPIC_NTOPICS };
+enum topic {
+	TOPIC_STATE, TOPIC_REPORT, TOPIC_ALARM, TOPIC_OFFER, TOPIC_ANSWER,
+	TOPIC_NTOPICS
+};
 
 /* Each participant of an edm-dds has a name that begins so. */
 #define TOPIC_DDS	"edm-dds "
@@ -28,11 +31,17 @@ enum topic { TOPIC_STATE, TOPIC_REPORT, TOPIC_ALARM, TOPIC_NTOPICS };
 
 #define TOPIC_KEPT_MAX	4096		/* reports, and alarms, of a machine */
 
-/** topic_writer_create() - Return: the writer, or a negative DDS code. */
-dds_entity_t topic_writer_create(dds_entity_t participant, enum topic which);
+/**
+ * topic_writer_create() - @owner: participant or publisher.
+ * Return: the writer, or a negative DDS code.
+ */
+dds_entity_t topic_writer_create(dds_entity_t owner, enum topic which);
 
-/** topic_reader_create() - Return: the reader, or a negative DDS code. */
-dds_entity_t topic_reader_create(dds_entity_t participant, enum topic which);
+/**
+ * topic_reader_create() - @owner: participant or subscriber.
+ * Return: the reader, or a negative DDS code.
+ */
+dds_entity_t topic_reader_create(dds_entity_t owner, enum topic which);
 
 /**
  * topic_domain_parse() - a domain number from the command line.
