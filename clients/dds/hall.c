@@ -87,23 +87,13 @@ static void left(struct hall *h, const char *name,
 		r->gone = info->instance_state != DDS_IST_ALIVE;
 }
 
-static bool is_there(const struct hall *h, dds_instance_handle_t writer)
-{
-	dds_builtintopic_endpoint_t *e =
-		dds_get_matched_publication_data(h->reader, writer);
-
-	if (e)
-		dds_builtintopic_free_endpoint(e);
-	return e;
-}
-
 static void settle(const struct hall *h, struct hall_machine *r)
 {
 	int others = 0;
 
 	for (size_t i = 0; i < HALL_PAST; i++)
-		others += r->past[i] && is_there(h, r->past[i]);
-	r->disputed = others && is_there(h, r->writer);
+		others += r->past[i] && topic_has_writer(h->reader, r->past[i]);
+	r->disputed = others && topic_has_writer(h->reader, r->writer);
 }
 
 int hall_look(struct hall *h)

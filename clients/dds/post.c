@@ -107,10 +107,3 @@ bool post_take(struct post *p, struct udpm_packet *ret,
 		return true;
 	return eventfd_read(p->fd, &n) == 0 && take(p, ret, ret_from);
 }
-
-int post_peers(const struct post *p, dds_instance_handle_t *ret, size_t max)
-{
-	const int n = dds_get_matched_publications(p->reader, ret, max);
-
-	return n > (int)max ? (int)max : n;
-}

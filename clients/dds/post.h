@@ -54,7 +54,4 @@ void post_send(struct post *p, const char *channel, const void *data,
 bool post_take(struct post *p, struct udpm_packet *ret,
 	       dds_instance_handle_t *ret_from);
 
-/** post_peers() - who writes to us now.  Return: how many, at most @max. */
-int post_peers(const struct post *p, dds_instance_handle_t *ret, size_t max);
-
 #endif /* DDS_POST_H */

@@ -47,24 +47,19 @@ static bool may_pass(const struct relay *r, const struct udpm_packet *u)
 	return is_on(r, u, "JOB") || (is_on(r, u, "COMMAND") && is_hello(u));
 }
 
-static struct relay_way *way_of(struct relay *r, dds_instance_handle_t peer)
+static void leave(struct relay_way *w)
 {
-	for (size_t i = 0; i < RELAY_WAYS; i++)
-		if (r->to[i].way && r->to[i].peer == peer)
-			return &r->to[i];
-	return NULL;
+	talk_way_close(w->way);
+	*w = (struct relay_way) { .way = NULL };
 }
 
-static void come(struct relay *r, dds_instance_handle_t peer)
+static void come(struct relay *r, struct relay_way *w,
+		 dds_instance_handle_t peer)
 {
 	const struct talk_options o = { .machine = r->machine };
 	char said[TALK_SAID_MAX] = "out of memory";
-	struct relay_way *w = NULL;
 
-	for (size_t i = 0; i < RELAY_WAYS && !w; i++)
-		w = r->to[i].way ? NULL : &r->to[i];
-	if (!w)
-		return;
+	leave(w);
 	if (talk_way_open(&w->way, &o, said) == 0) {
 		w->peer = peer;
 		tool_watch(r->epoll, talk_way_fd(w->way));
@@ -75,29 +70,19 @@ static void come(struct relay *r, dds_instance_handle_t peer)
 	r->said = !w->way;
 }
 
-static void leave(struct relay_way *w)
+/* That of @peer, a new one, or that of the most silent.  Return: way may be
+ * NULL: edmd-jobs cannot be reached. */
+static struct relay_way *way_of(struct relay *r, dds_instance_handle_t peer)
 {
-	talk_way_close(w->way);
-	*w = (struct relay_way) { .way = NULL };
-}
+	struct relay_way *w = &r->to[0];
 
-/* Who comes and who goes, as DDS sees it. */
-static void look(struct relay *r)
-{
-	dds_instance_handle_t peer[RELAY_WAYS];
-	const int n = post_peers(&r->post, peer, RELAY_WAYS);
-
-	for (size_t i = 0; i < RELAY_WAYS; i++) {
-		int at = 0;
-
-		while (at < n && peer[at] != r->to[i].peer)
-			at++;
-		if (r->to[i].way && at >= n)
-			leave(&r->to[i]);
-	}
-	for (int i = 0; i < n; i++)
-		if (!way_of(r, peer[i]))
-			come(r, peer[i]);
+	for (size_t i = 0; i < RELAY_WAYS && w->peer != peer; i++)
+		if (r->to[i].peer == peer || r->to[i].heard_s < w->heard_s)
+			w = &r->to[i];
+	if (w->peer != peer || !w->way)
+		come(r, w, peer);
+	w->heard_s = talk_now_s();
+	return w;
 }
 
 /* All hear the states and events; once is enough. */
@@ -139,16 +124,19 @@ void relay_step(struct relay *r)
 
 	if (!r->machine)
 		return;
-	look(r);
 	for (int i = 0; i < TAKE && post_take(&r->post, &u, &from); i++) {
-		struct relay_way *w = way_of(r, from);
+		struct relay_way *w = may_pass(r, &u) ? way_of(r, from) : NULL;
 
-		if (w && may_pass(r, &u))
+		if (w && w->way)
 			talk_way_send(w->way, u.channel, u.data, u.size);
 	}
 	for (size_t i = 0; i < RELAY_WAYS; i++) {
 		if (!r->to[i].way)
 			continue;
+		if (!topic_has_writer(r->post.reader, r->to[i].peer)) {
+			leave(&r->to[i]);
+			continue;
+		}
 		answer(r, &r->to[i], first);
 		first = false;
 	}

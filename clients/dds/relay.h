@@ -7,7 +7,8 @@
  * can give a job over DDS, but neither start nor stop anything.
  *
  * Each who offers has a connection of its own to edmd-jobs, as a person's
- * client has, as long as DDS sees it.
+ * client has, as long as DDS sees it.  One beyond takes the place of the one
+ * that was silent for the longest time.
  *
  * Threads: one.  No call waits for edmd-jobs.
  */
@@ -21,6 +22,7 @@
 
 struct relay_way {
 	dds_instance_handle_t peer;
+	double heard_s;
 	struct talk_way *way;		/* NULL: free */
 };
 

@@ -81,6 +81,16 @@ dds_entity_t topic_reader_create(dds_entity_t owner, enum topic which)
 	return reader;
 }
 
+bool topic_has_writer(dds_entity_t reader, dds_instance_handle_t writer)
+{
+	dds_builtintopic_endpoint_t *e =
+		dds_get_matched_publication_data(reader, writer);
+
+	if (e)
+		dds_builtintopic_free_endpoint(e);
+	return e;
+}
+
 int topic_number_parse(const char *word, double min, double max, double *ret)
 {
 	char *end;

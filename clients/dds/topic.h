@@ -5,13 +5,15 @@
  * Here is everything on which writer and reader have to agree.  docs/fleet.md
  * is for those who write another reader.
  *
- * Threads: startup only.
+ * Threads: startup only, but for topic_has_writer().
  */
 #ifndef DDS_TOPIC_H
 #define DDS_TOPIC_H
 
 #include "dds/dds.h"
 #include "edm.h"
+
+#include <stdbool.h>
 
 enum topic {
 	TOPIC_STATE, TOPIC_REPORT, TOPIC_ALARM, TOPIC_OFFER, TOPIC_ANSWER,
@@ -42,6 +44,9 @@ dds_entity_t topic_writer_create(dds_entity_t owner, enum topic which);
  * Return: the reader, or a negative DDS code.
  */
 dds_entity_t topic_reader_create(dds_entity_t owner, enum topic which);
+
+/** topic_has_writer() - does @reader still see this one? */
+bool topic_has_writer(dds_entity_t reader, dds_instance_handle_t writer);
 
 /**
  * topic_domain_parse() - a domain number from the command line.

@@ -229,6 +229,7 @@ class Stranger:
         sub = Subscriber(self.participant, qos=part)
         offer, answer = (Topic(self.participant, name, SignedPacket)
                          for name in ("EDM_JobOffer", "EDM_JobAnswer"))
+        self.qos = qos
         self.ends = [pub, sub, offer, answer]
         self.writer = DataWriter(pub, offer, qos=qos)
         self.offers = DataReader(sub, offer, qos=qos)
@@ -304,6 +305,15 @@ def test_a_stranger_gives_nothing_and_a_peer_with_a_key_does(cell, program):
     m = rig.command_t()
     m.client, m.seq, m.verb = c.name, c.number(), "start"
     s.offer(command, sealed(cell, c, "COMMAND", m))
+
+    # Many who offer and say nothing of use leave room for one who does.
+    crowd = [DataWriter(s.ends[0], s.ends[2], qos=s.qos) for _ in range(20)]
+    for w in crowd:
+        until(w.get_matched_subscriptions)
+        w.write(SignedPacket(channel=job, packet=[0] * 200))
+    p = edm_fleet("submit", program, "--machine", cell.name, "--id", "crowd")
+    assert p.returncode == 0, p.stderr
+    had.append("crowd")
 
     # What is right comes through, behind all that, and is answered.
     s.offer(job, piece("right"))
