@@ -125,6 +125,23 @@ static void fix_units(struct mend *m)
 	    "sets again, at each boot, what the kernel forgets");
 }
 
+/* An adapter that is plugged in later has its thread of interrupts then. */
+static void fix_udev(struct mend *m)
+{
+	const char *bus = m->config.can402.interface;
+	char text[400];
+
+	if (!config_machine_is(&m->config, MACHINE_DRIVES))
+		return;
+	snprintf(text, sizeof(text), "SUBSYSTEM==\"net\", KERNEL==\"%s\", "
+		 "ACTION==\"add\", ATTR{tx_queue_len}=\"100\", "
+		 "RUN+=\"/usr/bin/systemctl --no-block try-restart "
+		 "edmd-realtime.service\"\n", bus);
+	put(m, "/etc/udev/rules.d/61-edmd-realtime.rules", false, text,
+	    "without it an adapter that is plugged in later has neither room "
+	    "for a period's frames nor its priority");
+}
+
 /* -- The kernel ------------------------------------------------------------ */
 
 static void fix_core(struct mend *m, int core)
@@ -277,6 +294,7 @@ int doctor_fix(const struct doctor_fix *asked)
 	if (err)
 		return err;
 	fix_units(&m);
+	fix_udev(&m);
 	fix_core(&m, m.core);
 	if (m.edges_core >= 0 && m.edges_core != m.core)
 		fix_core(&m, m.edges_core);
@@ -284,8 +302,8 @@ int doctor_fix(const struct doctor_fix *asked)
 	    "or the kernel stops real-time threads for a part of each second");
 	fix_affinity(&m);
 	fix_threads(&m);
-	printf("\nnow: systemctl daemon-reload; systemctl enable "
-	       "edmd-realtime; systemctl restart edmd\n");
+	printf("\nnow: systemctl daemon-reload; udevadm control --reload; "
+	       "systemctl enable edmd-realtime; systemctl restart edmd\n");
 	tell_boot(&m);
 	return m.failed ? EX_NOPERM : 0;
 }

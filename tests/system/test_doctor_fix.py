@@ -65,6 +65,15 @@ def test_units_and_the_kernel_are_set(tmp_path):
         tmp_path, "proc/irq/9/smp_affinity_list").split("\n")[0].split(",")
 
 
+def test_an_adapter_that_comes_later_is_set_up_too(tmp_path):
+    fix(tmp_path)
+    rule = read(tmp_path, "etc/udev/rules.d/61-edmd-realtime.rules")
+    assert rule.count("\n") == 1
+    for part in ('KERNEL=="can7"', 'ATTR{tx_queue_len}="100"',
+                 "try-restart edmd-realtime.service"):
+        assert part in rule
+
+
 def test_another_core_is_left_alone(tmp_path):
     fix(tmp_path)
     assert read(tmp_path, "sys/devices/system/cpu/cpu0/cpufreq/"
@@ -94,7 +103,7 @@ def test_what_cannot_be_written_is_told(tmp_path):
     (tmp_path / "etc").write_text("no folder")
     p = fix(tmp_path)
     assert p.returncode == 77
-    assert p.stdout.count("Not a directory") == 2
+    assert p.stdout.count("Not a directory") == 3
     assert "written     /" in p.stdout      # the rest is done
 
 
