@@ -32,7 +32,7 @@
 	    config_gpio_has_gap, config_check_gpio, config_gpio_points_s) \
 	ROW(CAN402, "can402", io_can402_open, 2000000, \
 	    MACHINE_DRIVES | MACHINE_OWN_PLACE | MACHINE_HOMES | \
-	    MACHINE_SWITCHES, \
+	    MACHINE_SWITCHES | MACHINE_INDEX, \
 	    backend_can402_has_gap, config_check_can402, NULL)
 
 #define CONFIG_BACKEND_ID(id, name, open, period_ns, is, has_gap, check, \

@@ -34,6 +34,12 @@ static int refuse(struct check *q, int axis)
 	return -EINVAL;
 }
 
+static const char *word_of(const struct machine_config *c, int axis)
+{
+	return config_key(config_key_find(SECTION_AXIS, "home_method"))->word(
+		(int)c->manual[axis].method);
+}
+
 static bool can(const struct machine_config *c, int method)
 {
 	return (config_backend(c)->is & needs[method]) == needs[method];
@@ -52,7 +58,7 @@ static int refuse_method(struct check *q, int axis)
 				 *words ? ", " : "", k->word(i));
 	interp_diag_say(q->diag, "axis.%c.home_method %s, which backend %s "
 			"cannot do; one of %s", INTERP_AXIS_LETTERS[axis],
-			k->word((int)q->c->manual[axis].method),
+			word_of(q->c, axis),
 			config_backend(q->c)->name, words);
 	return refuse(q, axis);
 }
@@ -76,15 +82,15 @@ static bool has_switch(const struct machine_config *c, int axis)
 
 static int check_switch(struct check *q, int axis)
 {
-	if (q->c->manual[axis].method != HOME_SWITCH ||
+	if (!(needs[q->c->manual[axis].method] & MACHINE_SWITCHES) ||
 	    has_switch(q->c, axis))
 		return 0;
 	if (config_machine_is(q->c, MACHINE_DRIVES)) {
-		interp_diag_say(q->diag, "axis.%c.home_method switch and no "
-				"home in its drive_inputs; drive_inputs = "
-				"home:2, with the bit of object 60FD, or "
-				"home_method = none",
-				INTERP_AXIS_LETTERS[axis]);
+		interp_diag_say(q->diag, "axis.%c.home_method %s and no home "
+				"in its drive_inputs; drive_inputs = home:2, "
+				"with the bit of object 60FD, or home_method = "
+				"none",
+				INTERP_AXIS_LETTERS[axis], word_of(q->c, axis));
 		return refuse(q, axis);
 	}
 	interp_diag_say(q->diag, "axis.%c.home_method switch and gpio.home_%c "

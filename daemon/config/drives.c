@@ -100,7 +100,7 @@ int config_drive_leave(const char *text, uint16_t *ret,
 static int input_read(const char *word, struct config_input *ret)
 {
 	static const char *const names[CONFIG_NINPUTS] = {
-		"limit_low", "limit_high", "home", "estop"
+		"limit_low", "limit_high", "home", "estop", "contact"
 	};
 	const size_t n = strcspn(word, ":");
 	const bool inverted = word[n] == ':' && word[n + 1] == '!';
@@ -135,9 +135,10 @@ int config_drive_inputs(const char *text,
 		const int i = input_read(word, &in);
 
 		if (i < 0)
-			return refuse(diag, word, "limit_low, limit_high, home "
-				      "or estop, each as home:2 or home:!2, "
-				      "with a bit of object 60FD, 0 to 31");
+			return refuse(diag, word, "limit_low, limit_high, "
+				      "home, estop or contact, each as home:2 "
+				      "or home:!2, with a bit of object 60FD, 0 "
+				      "to 31");
 		if (ret[i].wired)
 			return refuse(diag, word, "each input once");
 		ret[i] = in;

@@ -29,6 +29,7 @@ int config_drive_leave(const char *text, uint16_t *ret,
 
 enum config_input_id {
 	INPUT_LIMIT_LOW, INPUT_LIMIT_HIGH, INPUT_HOME, INPUT_ESTOP,
+	INPUT_CONTACT,
 	CONFIG_NINPUTS
 };
 
@@ -40,8 +41,8 @@ struct config_input {
 };
 
 /**
- * config_drive_inputs() - "limit_low:0 limit_high:1 home:2 estop:!16"; with "!"
- * an input is on when its bit is 0.
+ * config_drive_inputs() - "limit_low:0 limit_high:1 home:2 estop:!16
+ * contact:5"; with "!" an input is on when its bit is 0.
  */
 int config_drive_inputs(const char *text,
 			struct config_input ret[CONFIG_NINPUTS],

@@ -168,8 +168,8 @@ static const struct config_key row[] = {
 	       "them"),
 	DRIVE_TEXT("drive_inputs", inputs,
 		   "what is wired to inputs of the drive, object 60FD: "
-	       "limit_low:BIT limit_high:BIT home:BIT estop:BIT; !BIT: on when "
-	       "the bit is 0"),
+	       "limit_low:BIT limit_high:BIT home:BIT estop:BIT contact:BIT; "
+	       "!BIT: on when the bit is 0"),
 	DRIVE_TEXT("drive_eds", eds,
 		   "file of the drive's EDS; what edmd writes is checked "
 	       "against it"),

@@ -309,6 +309,7 @@ static void fill_inputs(const struct can402 *s, uint32_t i,
 	in->limit = in->limit_low | in->limit_high;
 	in->home |= on[INPUT_HOME] * bit;
 	in->estop = in->estop || on[INPUT_ESTOP];
+	in->contact = in->contact || on[INPUT_CONTACT];
 }
 
 static void fill(struct can402 *s, struct io_inputs *in, uint32_t unplaced)
@@ -341,7 +342,11 @@ static void fill(struct can402 *s, struct io_inputs *in, uint32_t unplaced)
 		in->own[s->axis[i]] = drive_own_place(d);
 		in->ran_on[s->axis[i]] = s->stop[i].coast;
 		in->homed |= (d->homed_now == DRIVE_HOMED) * bit;
-		in->unfound |= (d->homed_now == DRIVE_UNFOUND) * bit;
+		in->unfound |= (d->homed_now == DRIVE_UNFOUND ||
+				d->latch == DRIVE_LATCH_FAILED) * bit;
+		in->latching |= (d->latch == DRIVE_LATCH_READY) * bit;
+		in->latched |= (d->latch == DRIVE_LATCH_KEPT) * bit;
+		in->latched_at[s->axis[i]] = drive_latched_at(d);
 		if (d->stands && s->placed && !d->lost)
 			in->stands_at[s->axis[i]] = drive_stands_at(d);
 	}
@@ -390,6 +395,7 @@ static void tell_drive(struct can402 *s, uint32_t i, enum drive_goal goal)
 
 	drive_home_ask(&s->drive[i], s->out.enable &&
 		       s->out.home >> s->axis[i] & 1);
+	drive_latch_ask(&s->drive[i], s->out.latch >> s->axis[i] & 1);
 	drive_aim(&s->drive[i], goal);
 	n = drive_emit(&s->drive[i], target, m);
 	for (size_t j = 0; j < n; j++)

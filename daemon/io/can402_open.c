@@ -202,6 +202,7 @@ static struct drive_config drive_of(const struct machine_config *c, int axis)
 		.no_follow_bit = !d->follow_bit,
 		.interpolates = d->mode == DRIVE_IP,
 		.reads_inputs = reads_inputs(c, axis),
+		.latches = c->manual[axis].method == HOME_SWITCH_INDEX,
 		.homes = c->manual[axis].method == HOME_DRIVE,
 		.homes_here = (int)d->home == HERE || (int)d->home == HERE_OLD,
 		.home_cycles = cycles_of(home_ms(c, axis), period_us),

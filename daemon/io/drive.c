@@ -93,6 +93,11 @@ int32_t drive_own_place(const struct drive *d)
 	       (int32_t)at;
 }
 
+int32_t drive_latched_at(const struct drive *d)
+{
+	return place_of(d, d->latch_at);
+}
+
 int32_t drive_place(const struct drive *d)
 {
 	return place_of(d, d->actual);

@@ -78,6 +78,7 @@ struct drive_config {
 					 * in quick stop too */
 	bool no_follow_bit;		/* it does not have bit 12 */
 	bool reads_inputs;		/* its digital inputs, 60FD, in TPDO2 */
+	bool latches;			/* its touch probe 1 is used */
 	uint32_t identity[4];		/* 1018:1 ... 4, where ... */
 	uint8_t identified;		/* ... this has bit 0 ... 3 */
 	struct drive_write write[DRIVE_WRITES];
@@ -107,6 +108,15 @@ enum drive_homed {
 	DRIVE_NOT_HOMED,
 	DRIVE_HOMED,
 	DRIVE_UNFOUND,
+};
+
+/* What came of the latch of its index mark. */
+enum drive_latch {
+	DRIVE_LATCH_OFF,
+	DRIVE_LATCH_BEGINS,		/* a mark may be missed yet */
+	DRIVE_LATCH_READY,
+	DRIVE_LATCH_KEPT,		/* ... and a mark has passed */
+	DRIVE_LATCH_FAILED,
 };
 
 struct drive {
@@ -194,6 +204,14 @@ struct drive {
 					 * began */
 	enum drive_homed homed_now;
 	int32_t told_pulses;		/* target that the cycle gave last */
+	/* drive_latch.c: its touch probe */
+	enum drive_latch latch;
+	uint32_t latch_step;		/* enum latch_step; 0: nothing */
+	uint32_t latch_for, latch_tries;	/* cycles in it; times begun */
+	bool latch_sent;		/* a request of it is not answered */
+	uint32_t latch_status;		/* 60B9 as last read */
+	int32_t latch_from, latch_at;	/* increments: it was switched on; the
+					 * mark */
 	uint32_t object_step;		/* enum object_step; 0: nothing */
 	int32_t object_from;		/* its place when it began */
 };
@@ -245,6 +263,9 @@ int32_t drive_place(const struct drive *d);
 
 /** drive_own_place() - the same from the drive's own zero. */
 int32_t drive_own_place(const struct drive *d);
+
+/** drive_latched_at() - the place of the mark that passed, in pulses. */
+int32_t drive_latched_at(const struct drive *d);
 
 /** drive_stands_at() - where it begins when it joins, in pulses: its actual
  *  position, or, once it has torque, where it is held. */
@@ -314,6 +335,14 @@ struct can_msg drive_upload(const struct drive *d, const struct drive_write *w);
 /** drive_sdo_bytes() - how many bytes were read. */
 uint8_t drive_sdo_bytes(const struct can_msg *m);
 
+/** drive_abort_passes() - may what a drive refuses now do in a while? */
+bool drive_abort_passes(uint32_t code);
+
+/** drive_note_abort() - it refused @w with @code, or, 0, said what will not
+ *  do; for the log. */
+void drive_note_abort(struct drive *d, const struct drive_write *w,
+		      uint32_t code, enum drive_passed passed);
+
 /** drive_setup_again() - begin again with the first step. */
 void drive_setup_again(struct drive *d);
 
@@ -355,6 +384,29 @@ void drive_home_drop(struct drive *d);
 
 /** drive_cycles() - so many ms as cycles, 1 at least. */
 uint32_t drive_cycles(const struct drive *d, uint32_t ms);
+
+/** drive_dither() - increments by which an axis that is held may move. */
+int32_t drive_dither(const struct drive *d);
+
+/* -- drive_latch.c: the place of its index mark ---------------------------- */
+
+/**
+ * drive_latch_ask() - keep the place of the next index mark, or stop doing so;
+ * to be called in each period.  d->latch tells what came of it, until it is not
+ * asked any more.
+ *
+ * The axis should stand until the latch is ready: what passes before is missed.
+ */
+void drive_latch_ask(struct drive *d, bool asked);
+
+/** drive_latch_emit() - the request that is due. */
+size_t drive_latch_emit(struct drive *d, struct can_msg *ret);
+
+/** drive_latch_receive() - take an answer. Return: false: it is not for us. */
+bool drive_latch_receive(struct drive *d, const struct can_msg *m);
+
+/** drive_latch_drop() - it is over, and nothing was found. */
+void drive_latch_drop(struct drive *d);
 
 /* -- drive_object.c: an object that somebody asks for, or sets ------------- */
 

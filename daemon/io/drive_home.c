@@ -98,8 +98,7 @@ static enum drive_home_step get_ready(struct drive *d)
 							  STEP_RUN;
 }
 
-/* In increments: an axis that is held dithers by so much. */
-static int32_t dither(const struct drive *d)
+int32_t drive_dither(const struct drive *d)
 {
 	return STILL_PULSES * abs(d->c.increments / d->c.pulses) + 1;
 }
@@ -109,7 +108,7 @@ static void watch_still(struct drive *d)
 	const int64_t off = (int64_t)d->actual - d->still_at;
 
 	d->still_for++;
-	if (llabs(off) <= dither(d))
+	if (llabs(off) <= drive_dither(d))
 		return;
 	d->still_at = d->actual;
 	d->still_for = 0;
@@ -120,7 +119,7 @@ static bool is_found(const struct drive *d)
 	return d->status & ATTAINED &&
 	       d->still_for > drive_cycles(d, STILL_MS) &&
 	       (d->home_fresh & ATTAINED ||
-		(d->c.homes_here && abs(d->actual) <= dither(d)));
+		(d->c.homes_here && abs(d->actual) <= drive_dither(d)));
 }
 
 static bool has_failed(const struct drive *d)

@@ -2,7 +2,7 @@
 /*
  * drive_sdo.h - the command bytes of SDO transfers (CiA 301)
  *
- * Private to drive_setup.c and drive_object.c.
+ * Private to drive_setup.c, drive_object.c and drive_latch.c.
  */
 #ifndef IO_DRIVE_SDO_H
 #define IO_DRIVE_SDO_H

@@ -59,6 +59,7 @@ void drive_setup_again(struct drive *d)
 	d->unset = false;
 	d->shows_mode = false;
 	drive_object_drop(d);
+	drive_latch_drop(d);
 }
 
 /* Time 0: not watched.  Our node stays there, unless the drive loses power. */
@@ -134,7 +135,10 @@ size_t drive_setup_remode(struct drive *d, struct can_msg *ret)
 {
 	const struct drive_write mode = mode_of(d);
 
-	if (d->object_step || !d->remode)
+	/* One request at a time: that of a latch first, if it is under way. */
+	if (d->latch_sent || (!d->object_step && !d->remode))
+		return drive_latch_emit(d, ret);
+	if (d->object_step)
 		return drive_object_emit(d, ret);
 	if (d->asked && d->waited++ < d->c.answer_cycles)
 		return 0;
@@ -146,8 +150,8 @@ size_t drive_setup_remode(struct drive *d, struct can_msg *ret)
 
 /* -- Answers -------------------------------------------------------------- */
 
-static void note_abort(struct drive *d, const struct drive_write *w,
-		       uint32_t code, enum drive_passed passed)
+void drive_note_abort(struct drive *d, const struct drive_write *w,
+		      uint32_t code, enum drive_passed passed)
 {
 	d->aborts++;
 	d->abort = code;
@@ -189,7 +193,7 @@ static bool is_missing(uint32_t code, const struct drive_step *s)
 }
 
 /* A drive that has just been switched on may not be ready for all requests. */
-static bool is_passing(uint32_t code)
+bool drive_abort_passes(uint32_t code)
 {
 	return code == 0x05040000 || code == 0x05040005 ||
 	       code == 0x060a0023 || code == 0x08000021 || code == 0x08000022;
@@ -200,15 +204,15 @@ static void on_abort(struct drive *d, const struct drive_step *s,
 {
 	const bool passes = s->write.may_miss && is_missing(code, s);
 
-	if (is_passing(code) && d->busy < BUSY_TRIES) {
+	if (drive_abort_passes(code) && d->busy < BUSY_TRIES) {
 		d->busy++;
 		d->asked = true;
-		note_abort(d, &s->write, code, DRIVE_LATER);
+		drive_note_abort(d, &s->write, code, DRIVE_LATER);
 		return;
 	}
 	if (d->reading_back) {
 		/* It cannot be read either: tell the code of the write. */
-		note_abort(d, &s->write, d->refused, DRIVE_NOT_PASSED);
+		drive_note_abort(d, &s->write, d->refused, DRIVE_NOT_PASSED);
 		refuse(d);
 		return;
 	}
@@ -218,7 +222,7 @@ static void on_abort(struct drive *d, const struct drive_step *s,
 		d->reading_back = true;
 		return;
 	}
-	note_abort(d, &s->write, code, passes ? DRIVE_WITHOUT :
+	drive_note_abort(d, &s->write, code, passes ? DRIVE_WITHOUT :
 		   s->kept ? DRIVE_ALREADY :
 		   s->has_choice ? DRIVE_ANOTHER : DRIVE_NOT_PASSED);
 	if (passes)
@@ -250,7 +254,7 @@ static void on_old_word(struct drive *d, const struct drive_step *s,
 	d->reading_back = false;
 	d->bytes = sized ? bytes : 0;
 	d->sized = d->step;
-	note_abort(d, &s->write, d->refused, sized ? DRIVE_ANOTHER :
+	drive_note_abort(d, &s->write, d->refused, sized ? DRIVE_ANOTHER :
 		   same ? DRIVE_ALREADY : DRIVE_NOT_PASSED);
 	if (same && !sized)
 		d->step++;
@@ -270,7 +274,7 @@ static void on_word(struct drive *d, const struct drive_step *s,
 		d->step++;
 		return;
 	}
-	note_abort(d, &(struct drive_write) {
+	drive_note_abort(d, &(struct drive_write) {
 		s->write.index, s->write.sub, s->write.bytes, d->word, false
 	}, 0, s->has_choice ? DRIVE_ANOTHER : DRIVE_NOT_PASSED);
 	if (!s->has_choice || !drive_step_choose(d))
@@ -289,7 +293,7 @@ static void hear_remode(struct drive *d, const struct can_msg *m)
 	d->asked = d->remode = false;
 	if (m->data[0] != SDO_ABORT)
 		return;
-	note_abort(d, &mode, can_get(m->data + 4, 4),
+	drive_note_abort(d, &mode, can_get(m->data + 4, 4),
 		   DRIVE_NOT_PASSED);
 	if (d->trouble == DRIVE_WELL)
 		d->trouble = DRIVE_OTHER_MODE;
@@ -300,7 +304,7 @@ void drive_setup_receive(struct drive *d, const struct can_msg *m)
 	struct drive_step s;
 	bool reads;
 
-	if (drive_object_receive(d, m))
+	if (drive_latch_receive(d, m) || drive_object_receive(d, m))
 		return;
 	if (d->phase == DRIVE_RUNNING) {
 		hear_remode(d, m);

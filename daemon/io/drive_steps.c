@@ -40,6 +40,7 @@ enum what {
 	TARGET,				/* the object that it follows */
 	MODE, SUB_MODE,			/* sub-mode: one point at a time */
 	FILE_WRITES,			/* those of the machine file */
+	LATCH_OFF,			/* touch probe, if it is used */
 	TIME_INDEX, TIME_VALUE,		/* interpolation: value * 10^index s */
 };
 
@@ -105,6 +106,7 @@ static const struct row rows[] = {
 	OTHER_PDO(0x1802), OTHER_PDO(0x1803),
 	OTHER_PDO(0x1804), OTHER_PDO(0x1805), OTHER_PDO(0x1806),
 	OTHER_PDO(0x1807),
+	{ 0x60b8, 0, 2, LATCH_OFF,   0,          false },
 	{ 0,      0, 0, FILE_WRITES, 0,          false },
 	{ 0x60c2, 2, 1, INDEX_READ,  0,          false },
 	{ 0x60c2, 2, 1, TIME_INDEX,  0,          false },
@@ -234,6 +236,8 @@ static bool is_due(const struct drive *d, const struct row *r)
 		return d->word != 0;
 	case SUB_MODE:
 		return d->c.interpolates;
+	case LATCH_OFF:
+		return d->c.latches;
 	default:
 		return true;
 	}

@@ -92,7 +92,11 @@ struct io_inputs {
 	uint32_t limit, home;		/* switches, a bit per axis: on */
 	uint32_t limit_low, limit_high;	/* ... of these limit is on at the end
 					 * of the axis that is known */
-	uint32_t index;			/* index mark passed in this period */
+	uint32_t latching;		/* bit per axis: io_outputs.latch is in
+					 * force: no mark is missed; */
+	uint32_t latched;		/* ... and a mark has passed; until
+					 * latch is 0 */
+	int32_t latched_at[IO_NAXES];	/* pulses: that mark */
 	enum io_trouble trouble;	/* until a reset */
 	bool steers;			/* axes without trouble still follow
 					 * their targets: they can brake on the
@@ -120,7 +124,8 @@ struct io_inputs {
 	uint32_t homing;		/* bit per axis: its drive is at
 					 * io_outputs.home; */
 	uint32_t homed, unfound;	/* ... and has found its zero, or has
-					 * not; until home is 0 */
+					 * not, or cannot latch; until home or
+					 * latch is 0 */
 };
 
 /* What the cycle wants, once a period. */
@@ -135,6 +140,8 @@ struct io_outputs {
 	bool reset;			/* for a period: an operator's reset */
 	uint32_t home;			/* bit per axis: its drive is to find
 					 * its zero by itself */
+	uint32_t latch;			/* bit per axis: its next index mark is
+					 * looked for */
 	bool power;			/* sparks allowed */
 	bool sense;			/* the voltage to feel contact by */
 	bool pump;			/* dielectric */

@@ -56,6 +56,7 @@ struct sim_switches {
 	int toward;			/* the switch is on from there on */
 	double home, min, max, index;
 	int32_t was;			/* a period ago */
+	int32_t mark;			/* that passed since it is looked for */
 };
 
 struct sim {
@@ -86,6 +87,7 @@ struct sim {
 	double stroke_mm;		/* of this period */
 	struct sim_switches switches[IO_NAXES];
 	uint32_t wired;			/* bit per axis that has any */
+	uint32_t latched;		/* ... whose mark passed */
 
 	/* Work and electrode. */
 	double begin_mm;		/* on the path: the surface */

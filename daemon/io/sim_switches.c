@@ -44,8 +44,15 @@ void sim_switches_read(struct sim *s, struct io_inputs *in)
 			in->home |= bit;
 		if (at < w->min || at > w->max)
 			in->limit |= bit;
-		if (floor(at / w->index) != floor(w->was / w->index))
-			in->index |= bit;
+		if (floor(at / w->index) != floor(w->was / w->index) &&
+		    ~s->latched & s->out.latch & bit) {
+			s->latched |= bit;
+			w->mark = at;
+		}
+		in->latched_at[i] = w->mark;
 		w->was = at;
 	}
+	s->latched &= s->out.latch;
+	in->latched = s->latched;
+	in->latching = s->out.latch & ~s->latched;
 }

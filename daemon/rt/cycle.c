@@ -263,7 +263,8 @@ static void give(struct cycle *c, struct io_outputs *out)
 	/* M5 takes effect in its own cycle, also when a way back meets it. */
 	c->out.power = may_spark(c);
 	c->out.sense = c->state == STATE_PROBE;
-	c->out.home = manual_drive_homes(c);
+	c->out.home = manual_in_phase(c, HOME_BY_DRIVE);
+	c->out.latch = manual_in_phase(c, HOME_INDEX);
 	if (c->loaded) {
 		const struct interp_cond *cond =
 			&c->cursor.p.conds[c->cursor.seg.cond];

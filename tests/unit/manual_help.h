@@ -18,6 +18,8 @@ struct bench {
 	int32_t home[INTERP_NAXES];	/* on at and below */
 	int32_t own_more;		/* the drives' own zero lies there */
 	int32_t index;			/* pulses from mark to mark */
+	int latch_cycles;		/* until one is looked for */
+	int latch_in[INTERP_NAXES];	/* ... from now on */
 	int32_t limit_min, limit_max;
 	bool ends_told, ends_swapped;	/* at which end each is */
 	int32_t before[INTERP_NAXES];
@@ -66,15 +68,35 @@ static inline void limit_is_on(struct bench *b, int i, bool high)
 		*(high ? &b->in.limit_high : &b->in.limit_low) |= 1u << i;
 }
 
+/* It takes a while until the mark is looked for. */
+static inline void latch(struct bench *b, int i)
+{
+	const uint32_t bit = 1u << i;
+
+	if (!(b->out.latch & bit)) {
+		b->in.latching &= ~bit;
+		b->in.latched &= ~bit;
+		b->latch_in[i] = b->latch_cycles;
+	} else if (b->latch_in[i] > 0) {
+		b->latch_in[i]--;
+	} else if (b->in.latching & bit && passed(b, i)) {
+		b->in.latched_at[i] = b->out.target[i];
+		b->in.latched |= bit;
+		b->in.latching &= ~bit;
+	} else if (!(b->in.latched & bit)) {
+		b->in.latching |= bit;
+	}
+}
+
 static inline void sense(struct bench *b)
 {
-	b->in.home = b->in.limit = b->in.index = 0;
+	b->in.home = b->in.limit = 0;
 	b->in.limit_low = b->in.limit_high = 0;
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		const int32_t at = b->out.target[i];
 
 		b->in.home |= at <= b->home[i] ? 1u << i : 0;
-		b->in.index |= passed(b, i) ? 1u << i : 0;
+		latch(b, i);
 		if (at < b->limit_min)
 			limit_is_on(b, i, b->ends_swapped);
 		if (at > b->limit_max)

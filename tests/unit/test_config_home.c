@@ -46,7 +46,7 @@ static const char *const can[CONFIG_NBACKENDS] = {
 	[BACKEND_SIM] = "yyyy-",
 	[BACKEND_NULL] = "y----",
 	[BACKEND_GPIO] = "yk---",
-	[BACKEND_CAN402] = "yk-kk",
+	[BACKEND_CAN402] = "ykkkk",
 };
 
 static const char *const key[CONFIG_NBACKENDS] = {
@@ -87,7 +87,7 @@ static void what_is_accepted_is_named(void **state)
 	assert_true(check(BACKEND_CAN402, 1, "", &d) < 0);
 	assert_non_null(strstr(d.wanted, "drive_inputs = home:2"));
 	assert_true(check(BACKEND_CAN402, 2, "", &d) < 0);
-	assert_string_equal(d.wanted, "one of none, switch, absolute, drive");
+	assert_non_null(strstr(d.wanted, "drive_inputs = home:2"));
 	assert_true(check(BACKEND_GPIO, 2, "", &d) < 0);
 	assert_string_equal(d.wanted, "one of none, switch");
 	assert_true(check(BACKEND_GPIO, 1, "", &d) < 0);

@@ -37,6 +37,16 @@ struct peer {
 	uint8_t polarity;		/* 607E, of one byte: its count has the
 					 * other sign */
 	uint32_t given_up;		/* SDO transfers that were aborted */
+	struct {
+		uint16_t asked, seen;	/* 60B8 as written, as looked at */
+		uint16_t status;	/* 60B9 */
+		int32_t place, mark;	/* 60BA; where the mark is */
+		int every, in;		/* it looks once in so many periods */
+		bool early;		/* it stores when it is switched on */
+		uint16_t toggle;	/* bit 6 is another with each mark */
+		bool held;		/* its status stays as it is */
+		int offs;		/* times that it was switched off */
+	} probe;
 };
 
 static struct drive_config config(void)
@@ -98,6 +108,7 @@ static void peer_write(struct peer *p, const uint8_t *d)
 	case 0x600700: p->abort_option = x; break;
 	case 0x606000: p->mode = (uint8_t)x; break;
 	case 0x606500: p->window = x; break;
+	case 0x60b800: p->probe.asked = (uint16_t)x; break;
 	case 0x607e00:
 		if (p->polarity != (uint8_t)x)
 			p->actual = p->latched = p->target = -p->actual;
@@ -120,6 +131,8 @@ static uint32_t peer_read(const struct peer *p, uint32_t at)
 	case 0x180001: return p->cob;
 	case 0x60c201: return p->time_value;
 	case 0x606500: return p->window;
+	case 0x60b900: return p->probe.status;
+	case 0x60ba00: return (uint32_t)p->probe.place;
 	case 0x607e00: return p->polarity;
 	case 0x60c202: return (uint8_t)p->time_index;
 	default: return at >> 8 >= 0x1400 && at >> 8 < 0x1900 ? 0x80000000u : 0;
@@ -174,6 +187,37 @@ static void sdo(struct peer *p, struct drive *d, const struct can_msg *m)
 	drive_receive(d, &a);
 }
 
+/* One that looks at 60B8 seldom, and forgets what it stored when it sees that
+ * it is switched off, and only then. */
+static void peer_probe(struct peer *p, int32_t was)
+{
+	const bool passed = (was - p->probe.mark) * (int64_t)(p->actual -
+			    p->probe.mark) <= 0 && was != p->actual;
+	const bool rises = p->probe.asked & ~p->probe.seen & 1;
+
+	if (p->probe.held)
+		return;
+	if (--p->probe.in <= 0) {
+		p->probe.offs += p->probe.seen && !p->probe.asked;
+		p->probe.in = p->probe.every;
+		if (rises && p->probe.early) {
+			p->probe.status |= 2;
+			p->probe.place = p->actual;
+		}
+		p->probe.seen = p->probe.asked;
+		if (!(p->probe.seen & 1))
+			p->probe.status = p->probe.toggle;
+	}
+	if (!(p->probe.seen & 1))
+		return;
+	p->probe.status |= 1;
+	if (!passed || p->probe.status & 2)
+		return;
+	p->probe.place = p->probe.mark;
+	p->probe.toggle ^= 0x40;
+	p->probe.status ^= 0x40 | 2;
+}
+
 static void hear(struct peer *p, struct drive *d, const struct can_msg *m)
 {
 	if (m->id == CAN_SDO_ASK + NODE) {
@@ -193,6 +237,7 @@ static void period(struct drive *d, struct peer *p, int32_t target)
 	struct can_msg m[DRIVE_EMITS];
 	struct can_msg a = { .id = CAN_TPDO1 + NODE,
 			     .len = (uint8_t)(p->ntpdo == 3 ? 7 : 6) };
+	const int32_t was = p->actual;
 	size_t n;
 
 	if (p->operational && p->mapped && !p->mute) {
@@ -205,6 +250,7 @@ static void period(struct drive *d, struct peer *p, int32_t target)
 	if ((p->status & 0x6f) == 0x27)
 		p->actual = p->latched;
 	p->latched = p->target;
+	peer_probe(p, was);
 	n = drive_emit(d, target, m);
 	for (size_t i = 0; i < n && !p->deaf; i++)
 		hear(p, d, &m[i]);
@@ -1004,12 +1050,146 @@ static void an_object_of_another_size_is_written_with_that_size(void **state)
 	}
 }
 
+/* The axis stands until the latch is ready, then goes on by a pulse a period.
+ * Return: where it is then. */
+static int32_t go_to_mark(struct rig *r, int32_t from, int32_t to)
+{
+	int32_t at = from;
+
+	for (int i = 0; i < 3000 && r->d.latch < DRIVE_LATCH_KEPT; i++) {
+		drive_latch_ask(&r->d, true);
+		at += r->d.latch == DRIVE_LATCH_READY && at != to ?
+		      (to > at ? 1 : -1) : 0;
+		run(r, 1, at);
+	}
+	return at;
+}
+
+static void a_drive_keeps_the_place_of_its_mark(void **state)
+{
+	static const int every[] = { 1, 7, 40 };
+	struct rig r;
+	int32_t at = 0;
+
+	(void)state;
+	for (size_t i = 0; i < 3; i++) {
+		enable(&r);
+		r.p.probe.every = every[i];
+		for (int n = 0; n < 5; n++) {
+			const int32_t mark = n % 2 ? -37 : 55 + n;
+
+			r.p.probe.mark = 123456 + 10 * mark + 3;
+			at = go_to_mark(&r, n ? at : 0, n % 2 ? -90 : 90);
+			assert_int_equal(r.d.latch, DRIVE_LATCH_KEPT);
+			assert_int_equal(drive_latched_at(&r.d), mark);
+			drive_latch_ask(&r.d, false);
+			assert_int_equal(r.d.latch, DRIVE_LATCH_OFF);
+			run(&r, n == 4 ? 100 : 1, at);
+		}
+		assert_int_equal(r.p.probe.asked, 0);
+		assert_int_equal(r.d.malformed, 0);
+		assert_int_equal(r.d.trouble, DRIVE_WELL);
+	}
+}
+
+/* A mark is none that was stored before, or that the axis did not pass. */
+static void a_mark_that_was_not_passed_is_none(void **state)
+{
+	struct rig r;
+
+	(void)state;
+	enable(&r);
+	r.p.probe.early = true;
+	go_to_mark(&r, 0, 90);
+	assert_int_equal(r.d.latch, DRIVE_LATCH_FAILED);
+	assert_in_range(r.p.probe.offs, 2, 3);
+	assert_int_equal(r.d.abort_index, 0x60b9);
+
+	enable(&r);
+	r.p.probe.mark = 123456 + 500;
+	r.p.probe.held = true;
+	r.p.probe.status = 2;		/* stuck: never on */
+	go_to_mark(&r, 0, 90);
+	assert_int_equal(r.d.latch, DRIVE_LATCH_FAILED);
+
+	enable(&r);
+	r.p.probe.mark = 123456 + 500;
+	for (int i = 0; i < 40 && r.d.latch != DRIVE_LATCH_READY; i++) {
+		drive_latch_ask(&r.d, true);
+		run(&r, 1, 0);
+	}
+	r.p.probe.held = true;
+	r.p.probe.status = 3;
+	r.p.probe.place = 123456 + 500;	/* not there yet */
+	go_to_mark(&r, 0, 20);
+	assert_int_equal(r.d.latch, DRIVE_LATCH_FAILED);
+	assert_int_equal(r.d.abort_index, 0x60ba);
+	assert_int_equal(r.d.abort_value, 123456 + 500);
+}
+
+/* It is told, and so is what it lost on the way: the axis goes nowhere. */
+static void one_that_cannot_latch_says_so(void **state)
+{
+	static const uint32_t refuses[] = { 0x60b800, 0x60b900, 0x60ba00 };
+	struct rig r;
+
+	(void)state;
+	for (size_t i = 0; i < 3; i++) {
+		enable(&r);
+		r.p.probe.mark = 123456 + 55;
+		r.p.refuses = refuses[i];
+		r.p.code = 0x08000020;
+		go_to_mark(&r, 0, 90);
+		assert_int_equal(r.d.latch, DRIVE_LATCH_FAILED);
+		assert_int_equal(r.d.abort_index, refuses[i] >> 8);
+		assert_int_equal(r.d.trouble, DRIVE_WELL);
+	}
+	enable(&r);
+	r.p.deaf = true;
+	go_to_mark(&r, 0, 90);
+	assert_int_equal(r.d.latch, DRIVE_LATCH_FAILED);
+	enable(&r);
+	drive_latch_ask(&r.d, true);
+	run(&r, 3, 0);
+	lose_power(&r);
+	drive_latch_ask(&r.d, true);
+	assert_int_equal(r.d.latch, DRIVE_LATCH_FAILED);
+}
+
 static enum cia402_end object(struct rig *r, struct cia402_request q,
 			      int cycles)
 {
 	drive_object_ask(&r->d, &q);
 	run(r, cycles, 0);
 	return (enum cia402_end)r->d.object.end;
+}
+
+/* One request at a time: each gets its own answer. */
+static void a_person_reads_an_object_while_a_mark_is_sought(void **state)
+{
+	static const uint16_t objects[] = { 0x6065, 0x60b9, 0x60ba };
+	struct rig r;
+	int32_t at = 0;
+
+	(void)state;
+	for (int shift = 0; shift < 30; shift++) {
+		const struct cia402_request q = { .index = objects[shift % 3] };
+
+		enable(&r);
+		r.p.probe.mark = 123456 + 10 * 60;
+		for (int i = 0; i < 400 && r.d.latch < DRIVE_LATCH_KEPT; i++) {
+			drive_latch_ask(&r.d, true);
+			if (i == shift)
+				drive_object_ask(&r.d, &q);
+			at += r.d.latch == DRIVE_LATCH_READY;
+			run(&r, 1, at);
+		}
+		assert_int_equal(r.d.latch, DRIVE_LATCH_KEPT);
+		assert_int_equal(drive_latched_at(&r.d), 60);
+		assert_int_equal(r.d.object.end, CIA402_DONE);
+		assert_int_equal(r.d.malformed, 0);
+		at = 0;
+	}
 }
 
 static void an_object_is_read_while_the_drive_runs(void **state)
@@ -1407,6 +1587,10 @@ int main(void)
 		cmocka_unit_test(one_stopped_by_nmt_is_trouble),
 		cmocka_unit_test(the_period_is_told_in_a_unit_the_drive_has),
 		cmocka_unit_test(an_object_of_another_size_is_written_with_that_size),
+		cmocka_unit_test(a_drive_keeps_the_place_of_its_mark),
+		cmocka_unit_test(a_mark_that_was_not_passed_is_none),
+		cmocka_unit_test(one_that_cannot_latch_says_so),
+		cmocka_unit_test(a_person_reads_an_object_while_a_mark_is_sought),
 		cmocka_unit_test(an_object_is_read_while_the_drive_runs),
 		cmocka_unit_test(an_object_is_set_with_the_size_it_has_and_read_back),
 		cmocka_unit_test(what_moves_an_axis_is_not_set),

@@ -39,21 +39,48 @@ static void a_switch_is_home(void **state)
 	}
 }
 
-/* The mark after the switch, wherever the switch comes between two. */
+/* The mark after the switch, wherever the switch comes between two, and however
+ * long the drive takes until it looks for it. */
 static void an_index_mark_is_home(void **state)
 {
 	(void)state;
-	for (int32_t at = -50000; at < -46000; at += 370) {
+	for (int32_t at = -49900; at < -46000; at += 370) {
 		const struct cycle_config k = home_config(HOME_SWITCH_INDEX);
 		const int32_t mark = (int32_t)floor(at / 2000.0) * 2000;
 		struct bench b;
 
 		bench_init(&b, &k);
 		b.home[INTERP_X] = at;
+		b.latch_cycles = -at % 300;
 		ask(&b, CYCLE_HOME, INTERP_X, 0);
 		run_out(&b, STATE_IDLE);
 		check_homed(&b, INTERP_X, mark);
 	}
+}
+
+static void a_drive_that_cannot_latch_finds_no_home(void **state)
+{
+	const struct cycle_config k = home_config(HOME_SWITCH_INDEX);
+	struct bench b;
+	int32_t at;
+
+	(void)state;
+	bench_init(&b, &k);
+	b.latch_cycles = 1000000;
+	ask(&b, CYCLE_HOME, INTERP_X, 0);
+	while (!b.out.latch)
+		period(&b);
+	for (int i = 0; i < 20; i++)
+		period(&b);
+	at = b.out.target[INTERP_X];
+	for (int i = 0; i < 200; i++)
+		period(&b);
+	assert_int_equal(b.out.target[INTERP_X], at);
+	assert_int_equal(b.c.state, STATE_HOME);
+	b.in.unfound = X_BIT;
+	run_out(&b, STATE_FAULT);
+	assert_int_equal(b.c.fault.first, FAULT_HOME);
+	assert_int_equal(b.out.latch, 0);
 }
 
 static void an_absolute_drive_says_where_it_is(void **state)
@@ -452,6 +479,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_switch_is_home),
 		cmocka_unit_test(an_index_mark_is_home),
+		cmocka_unit_test(a_drive_that_cannot_latch_finds_no_home),
 		cmocka_unit_test(an_absolute_drive_says_where_it_is),
 		cmocka_unit_test(a_limit_switch_is_where_the_drive_counts_now),
 		cmocka_unit_test(backlash_does_not_move_home),

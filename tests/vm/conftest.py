@@ -9,7 +9,7 @@ import power
 import pytest
 from boot import (ADC, BRAKES, BUILD, BUILD_VM, CAN402_LINES, CIRCLE, COMMISSION, CUT, EDGES, FAR, GAP, GAP_FRAMES, GENERATOR, HERE, LEVELS,
                   FEEL_JOB, LEVELS_JOB, LINES, LINES_CUT, LINES_TECH, ROUNDS,
-                  ENCODER, QUICK_JOB, ROOT, Run, SHARED, SLOW_JOB, STRICT_HOME, STRICT_INPUTS, STRICT_REFUSED, STRICT_UP, TO_AND_FRO,
+                  ENCODER, QUICK_JOB, ROOT, Run, SHARED, SLOW_JOB, STRICT_HOME, STRICT_INPUTS, STRICT_MARKS, STRICT_REFUSED, STRICT_UP, TO_AND_FRO,
                   UNRULY_SCENES, VIRTUAL, checked, drives, lagging, machine)
 
 
@@ -118,7 +118,7 @@ def strict():
         "strict-up.ini": drives("XYZA", STRICT_UP, "no", falls="Z"),
         "strict-up.ngc": "G21 G90\nG1 X1 Y-0.5 Z0.3 A2 F60\n"
                          "G1 X0.2 Y0.1 Z-0.1 A-0.4\nM30\n",
-        "strict-refused.ini": drives("XYZAB", STRICT_REFUSED, "no", falls="Y"),
+        "strict-refused.ini": drives("XYZABC", STRICT_REFUSED, "no", falls="Y"),
         "strict-refused.ngc": CUT,
         "strict-late.ini": drives("XY", GAP_FRAMES, "no"),
         "strict-late.ngc": CUT,
@@ -127,6 +127,8 @@ def strict():
         "strict-home.ngc": "G21 G90\nG1 X-1 Y4 Z1 F60\nM30\n",
         "strict-inputs.ini": drives("XY", STRICT_INPUTS, "no"),
         "strict-inputs.ngc": "G21 G90\nG1 X-1 Y4 F60\nM30\n",
+        "strict-marks.ini": drives("XY", STRICT_MARKS, "no"),
+        "strict-marks.ngc": "G21 G91\nG38.2 X60 F120\nM30\n",
         "strict-asked.ini": drives("XYZ", STRICT_HOME, "no", falls="Z"),
         "strict-commission.ini": COMMISSION,
         "first.ngc": "G21 G91\nG1 X-0.3 F60\nM30\n",
@@ -140,7 +142,7 @@ def strict():
         "strict.env": f"SEED={os.environ.get('EDM_SEED', 1)}\n"
                       f"RUNS={os.environ.get('EDM_RUNS', 4)}\n"
                       "SCENES=" + os.environ.get(
-                          "EDM_SCENES", "up,refused,late,objects,homes,asked,inputs,commission,ip,faults,attack,noise") + "\n",
+                          "EDM_SCENES", "up,refused,late,objects,homes,asked,inputs,marks,commission,ip,faults,attack,noise") + "\n",
     }, "-d", copies=[guest / n for n in (
         "can402.py", "strict.py", "can402_strict.py",
         "commission.py")] + [HERE.parent / "system/person.py"]))

@@ -94,6 +94,8 @@ def test_what_a_drive_lacks_is_told_in_words(up):
     "no such object",
     "drive B (node 5) refuses object 1a01:01, value 60fd0020, code 06040041: "
     "object cannot be mapped",
+    "drive C (node 6) refuses object 60b8:00, value 0, code 06020000: "
+    "no such object",
 ])
 def test_a_refusal_is_told_with_object_value_code_and_words(strict, text):
     seen = Seen(strict, "strict-refused")
@@ -324,6 +326,55 @@ def test_a_home_switch_wired_to_a_drive_is_found(inputs):
     assert abs(mm - out["home: state"]["pos_mm"][0]) < 0.03, mm
     assert out["job"][0] == 0, out["job"]
     assert "program 1 ended: done" in inputs.log
+
+
+# True place of the mark that is home: where it begins, going toward - of the axis,
+# which is + of Y's drive.
+MARKS = {"X": (0, -347000 + 40, -3), "Y": (1, 27700, 4)}
+
+
+@pytest.fixture(scope="module")
+def marks(strict):
+    seen = Seen(strict, "strict-marks")
+    print(seen.d["out"], seen.d["marks"], seen.d["offences"], sep="\n")
+    seen.went_as_planned()
+    return seen
+
+
+def off_mark_mm(marks, what, axis):
+    """How far edmd is wrong about where the axis truly is."""
+    drive, at, at_mm = MARKS[axis]
+    row = [r for r in marks.rows if r[0] <= marks.at[what]][-1]
+    _, per, pulses = DRIVES[axis]
+    true_mm = at_mm + (row[2][drive][1] - at) * pulses / per / 1000
+    return true_mm - marks.d["out"][f"{what}: state"]["pos_mm"]["XY".index(axis)]
+
+
+@pytest.mark.parametrize("axis", "XY")
+def test_the_place_of_an_index_mark_is_exact(marks, axis):
+    """To a pulse, though 10 of them are the way of a period."""
+    for n in range(3):
+        assert marks.d["out"][f"{axis} {n}"][0] == 0, marks.d["out"]
+        assert abs(off_mark_mm(marks, f"{axis} {n}", axis)) < 0.0016
+    assert marks.d["offences"] == []
+
+
+def test_a_contact_at_a_drive_is_probed(marks):
+    out = marks.d["out"]
+    assert "program 1 ended: done" in marks.log
+    mm = -3 + (200000 - MARKS["X"][1]) * 5000 / 524288 / 1000
+    assert 0 <= out["probe: state"]["pos_mm"][0] - mm < 0.01
+
+
+def test_a_search_for_a_mark_can_be_ended(marks):
+    out = marks.d["out"]
+    assert out["asked"][0] == 0
+    assert json.loads(out["hold: off"][1])["value"] == 0
+    assert "X" in out["hold: lost"]
+    for what in "hold: home", "off: home", "marks again":
+        assert out[what][0] == 0, (what, out[what])
+        assert abs(off_mark_mm(marks, what, "X")) < 0.0016
+    assert out["no marks: state"]["fault"] == "home-not-found"
 
 
 def test_a_limit_at_a_drive_stops_motion_that_way_only(inputs):

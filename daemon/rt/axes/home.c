@@ -226,9 +226,9 @@ static enum home_phase clear(struct cycle *c, const struct io_inputs *in)
 }
 
 /* What homing looks for is here. */
-static enum home_phase meet(struct cycle *c)
+static enum home_phase meet(struct cycle *c, int32_t at)
 {
-	c->manual.met = pulses(c);
+	c->manual.met = at;
 	manual_stop(c);
 	return HOME_STAND;
 }
@@ -238,18 +238,21 @@ static enum home_phase go_onto(struct cycle *c, const struct io_inputs *in)
 	const struct manual_axis *a = manual_axis(c);
 
 	if (is_on(c, in->home) && a->method != HOME_SWITCH_INDEX)
-		return meet(c);
+		return meet(c, pulses(c));
 	run(c, a->home_toward, a->home_slow_mm_s);
 	return is_on(c, in->home) ? HOME_INDEX : HOME_ONTO;
 }
 
+/* It goes on only when no mark can be missed any more. */
 static enum home_phase seek_index(struct cycle *c, const struct io_inputs *in)
 {
 	const struct manual_axis *a = manual_axis(c);
 
-	if (is_on(c, in->index))
-		return meet(c);
-	run(c, a->home_toward, a->home_slow_mm_s);
+	if (is_on(c, in->latched))
+		return meet(c, in->latched_at[c->manual.axis]);
+	if (is_on(c, in->unfound))
+		fault_latch(&c->fault, FAULT_HOME);
+	run(c, a->home_toward, is_on(c, in->latching) ? a->home_slow_mm_s : 0);
 	return HOME_INDEX;
 }
 

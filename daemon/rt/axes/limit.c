@@ -66,7 +66,7 @@ void limit_guard(struct cycle *c, const struct io_inputs *in)
 	l->on = in->limit;
 	l->met |= in->limit;
 	/* A drive that homes may look for its limit switch. */
-	if ((came & ~manual_drive_homes(c) && cycle_moves(c)) ||
+	if ((came & ~manual_in_phase(c, HOME_BY_DRIVE) && cycle_moves(c)) ||
 	    (in->limit & ~told && state_duty[c->state].running))
 		fault_latch(&c->fault, FAULT_LIMIT_SWITCH);
 }

@@ -33,11 +33,11 @@ uint32_t manual_by_drive(const struct cycle *c)
 	return axes;
 }
 
-uint32_t manual_drive_homes(const struct cycle *c)
+uint32_t manual_in_phase(const struct cycle *c, enum home_phase phase)
 {
 	const struct manual *h = &c->manual;
 
-	return c->state == STATE_HOME && h->phase == HOME_BY_DRIVE &&
+	return c->state == STATE_HOME && h->phase == phase &&
 	       !h->halt ? 1u << h->axis : 0;
 }
 

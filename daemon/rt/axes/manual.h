@@ -49,7 +49,7 @@ enum home_phase {
 	HOME_LEAVE,			/* back, until it is off */
 	HOME_CLEAR,			/* ... and home_back_mm further */
 	HOME_ONTO,			/* slowly, on it again */
-	HOME_INDEX,			/* slowly, on to the index mark */
+	HOME_INDEX,			/* slowly, on to the next index mark */
 	HOME_STAND,			/* brake, and call the place */
 	HOME_BY_DRIVE,			/* the drive moves by itself */
 	HOME_NPHASES
@@ -120,8 +120,8 @@ int manual_place(struct cycle *c, uint32_t axis, double mm);
 /** manual_by_drive() - bits of the axes whose drives home by themselves. */
 uint32_t manual_by_drive(const struct cycle *c);
 
-/** manual_drive_homes() - bit of the axis whose drive is to do so now. */
-uint32_t manual_drive_homes(const struct cycle *c);
+/** manual_in_phase() - bit of the axis that is in this phase of homing. */
+uint32_t manual_in_phase(const struct cycle *c, enum home_phase phase);
 
 /** manual_ends() - is it told to end, or the time of its press over? */
 bool manual_ends(const struct cycle *c);

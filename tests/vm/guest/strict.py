@@ -20,6 +20,11 @@ drives.py, no CANopen package.  TRAITS is JSON, node -> what is particular:
                at -3000 or below, bit 1 at 3000 or above; {"16": 1}: it is 1
     no6        6502 says mode 6, and 6060 refuses it
     ip         mode 7 in place of mode 8, without a buffer
+    probe      a touch probe 1, with index marks each {"every": increments}, as wide
+               as "width" and the first from "from" on; it looks at 60B8 each "task"
+               s; "keeps": the first time it is switched on after a mark, it still
+               has that one; "toggles": bit 6 is another with each mark; "lost":
+               it does not know the place of a mark
     home       it homes by itself in mode 6, with {"at": its true place; "stale":
                bit 12 is 1 from the beginning; "late": SYNCs until it begins;
                "leave": it counts anew only when it leaves the mode; "torque": it
@@ -30,7 +35,7 @@ COMMANDS is a FIFO, a line for each thing to do:
     deaf N, it hears no SYNC | hears N | weak N, its supply breaks down | strong N |
     slow N OBJECT SECONDS | invert N BIT | off N | on N | push N INCREMENTS | mode N M | bits N SET CLEAR | emcy N CODE
     gap V LOUD: with more noise |
-    fails N, its next homing; warn N CODE [MAKER], an emergency without a fault, MAKER 10 digits | jam N | unjam N |
+    marks N 0 or 1, it sees none; fails N, its next homing; warn N CODE [MAKER], an emergency without a fault, MAKER 10 digits | jam N | unjam N |
     clip N, bit 11 and it stands | free N | gap V | nmt BYTE BYTE | report FILE | quit
 where FILE leaves the true places alone.  A report has a row for each SYNC: its time, the generator's flags, and of each
 drive its state, where the axis truly is, what the drive counts, and 6060.
@@ -105,6 +110,8 @@ def dictionary(node, traits):
         (0x607a, 0): Entry(u32, 0),
         (0x6085, 0): Entry(u32, 100000, low=1000, high=100000000),
         (0x60fd, 0): Entry(u32, 0, ro=True),
+        (0x60b8, 0): Entry(u16, 0), (0x60b9, 0): Entry(u16, 0, ro=True),
+        (0x60ba, 0): Entry(u32, 0, ro=True),
         (0x60c2, 0): Entry(u8, 2, ro=True),
         (0x60c2, 1): Entry(u8, 1, low=1, high=20),
         (0x60c2, 2): Entry(u8, 0xfd, ro=True),
@@ -135,6 +142,9 @@ def dictionary(node, traits):
     for name, high in traits.get("most", {}).items():
         index, sub = name.split(":")
         od[int(index, 16), int(sub)].high = high
+    if not traits.get("probe"):
+        for index in 0x60b8, 0x60b9, 0x60ba:
+            del od[index, 0]
     for name in traits.get("without", ()):
         for key in [k for k in od if k[0] == int(name, 16)]:
             del od[key]
@@ -183,6 +193,7 @@ class Drive:
         self.was4, self.renumber, self.waits = False, False, 0
         self.beat_at = self.heard_master = self.synced = None
         self.step = 0
+        self.probe = Probe(self, self.traits.get("probe"))
 
     def get(self, index, sub=0):
         """0 of what it does not have."""
@@ -203,6 +214,10 @@ class Drive:
             return 4, self.inputs()
         if key == (0x6064, 0):
             return 4, self.count & 0xffffffff
+        if key == (0x60b9, 0):
+            return 2, self.probe.status
+        if key == (0x60ba, 0):
+            return 4, self.probe.read()
         return self.od[key].size, self.od[key].value
 
     def download(self, key, size, value):
@@ -244,6 +259,8 @@ class Drive:
 
     def check(self, index, sub, value):
         now = self.od[index, sub].value
+        if index == 0x60b8:
+            self.probe.check(now, value)
         if 0x1400 <= index < 0x1600 or 0x1800 <= index < 0x1a00:
             valid = not self.od[index, 1].value >> 31
             if self.nmt == OPERATIONAL:
@@ -538,6 +555,7 @@ class Drive:
             self.step = 0
         self.true += self.step
         self.count = self.true - self.offset
+        self.probe.pass_by(self.true - self.step, self.true)
 
     def emergency(self, code):
         self.bus.send(0x80 + self.node, struct.pack("<HBxxxxx", code,
@@ -571,6 +589,7 @@ class Drive:
             if now >= self.ready_at:
                 self.state = "disabled"
                 self.count = self.true - self.offset
+        self.probe.look(now)
         while self.slow and self.slow[0][0] <= now:
             if self.nmt != STOPPED:
                 self.bus.send(0x580 + self.node, self.slow[0][1])
@@ -602,6 +621,73 @@ class Drive:
             self.heard_master = now
 
 
+class Probe:
+    """Touch probe 1.  What it says is that of a task of its own, which looks at
+    60B8 now and then: a 0 that it did not see was none."""
+
+    ON, FIRST_OF, MARK, RISING, FALLING = 1, 2, 4, 0x10, 0x20
+
+    def __init__(self, drive, traits):
+        self.drive, self.traits = drive, traits or {}
+        self.seen = self.status = self.place = 0
+        self.new = self.old = False     # a mark came; it is not forgotten yet
+        self.looked = 0
+
+    def check(self, now, value):
+        if value & ~(self.ON | self.FIRST_OF | self.MARK | self.RISING |
+                     self.FALLING):
+            raise Abort(RANGE)          # the second one, or another source
+        if value & self.ON and not value & (self.RISING | self.FALLING):
+            raise Abort(RANGE)
+        if now & self.ON and value & self.ON:
+            raise Abort(NOT_NOW)        # not while it is on
+        if value & self.ON and self.seen & self.ON:
+            self.drive.offence("its touch probe did not see that it was off")
+
+    def read(self):
+        if not self.status & 2:
+            self.drive.offence("the place of a mark was read, and there is none")
+        return self.place & 0xffffffff
+
+    def look(self, now):
+        if now - self.looked < self.traits.get("task", 0):
+            return
+        self.looked = now
+        value = self.drive.get(0x60b8)
+        rises = value & ~self.seen & self.ON
+        self.seen = value
+        if not value & self.ON:
+            self.old, self.new = self.old or self.new, False
+            self.status &= ~3
+        elif rises:
+            if self.old and self.traits.get("keeps"):
+                self.status |= 2
+            self.old = False
+            self.status |= 1
+
+    def pass_by(self, was, now):
+        """Its edge rises where the mark begins, from whichever side."""
+        if not (self.traits and self.seen & self.ON and now != was and
+                not self.status & 2 and self.seen & self.MARK):
+            return
+        every, begin = self.traits["every"], self.traits.get("from", 0)
+        if now < was:
+            begin += self.traits.get("width", 0)
+            edge = (was - 1 - begin) // every * every + begin
+            met = edge >= now
+        else:
+            edge = -((begin - was - 1) // every) * every + begin
+            met = edge <= now
+        if not met or self.traits.get("lost"):
+            return
+        self.drive.bus.marks.append((self.drive.node, edge))
+        self.place = edge - self.drive.offset
+        self.status |= 2
+        self.new = True
+        if self.traits.get("toggles"):
+            self.status ^= 0x40
+
+
 class Bus:
     def __init__(self, interface, commands, traits):
         self.sock = socket.socket(socket.PF_CAN, socket.SOCK_RAW,
@@ -609,7 +695,7 @@ class Bus:
         self.sock.setblocking(False)
         self.sock.bind((interface,))
         self.aborts, self.rows, self.flags, self.gap_v = [], [], 0, 0.0
-        self.stored, self.offences = [], []
+        self.stored, self.offences, self.marks = [], [], []
         self.noise, self.came = 0, []   # harm: when, after how many rows
         self.drives = {int(n): Drive(self, int(n), t)
                        for n, t in traits.items()}
@@ -674,7 +760,8 @@ class Bus:
                 json.dump({"nodes": list(self.drives), "rows": self.rows,
                            "aborts": self.aborts, "came": self.came,
                            "stored": self.stored,
-                           "offences": self.offences}, f)
+                           "offences": self.offences,
+                           "marks": self.marks}, f)
             os.rename(args[0] + ".new", args[0])
             self.rows, self.aborts, self.came = [], [], []
         elif what == "quit":
@@ -713,6 +800,8 @@ class Bus:
             d.inverted ^= 1 << int(args[0])
         elif what in ("loses", "finds"):
             d.loses = what == "loses"
+        elif what == "marks":
+            d.probe.traits["lost"] = args[0] == "0"
         elif what == "fails":
             d.fails = True
         elif what in ("jam", "unjam"):
