@@ -50,7 +50,7 @@ static const struct step {
 	{ "home", EACH_AXIS, METHOD, tour_home,
 	  "it homes again and again; the homes must be the same" },
 	{ "following", EACH_AXIS, NOTHING, tour_following,
-	  "it goes to and fro; how it follows is measured and kept" },
+	  "it goes to and fro, also in waves; how it follows is kept" },
 	{ "backlash", EACH_AXIS, NOTHING, tour_backlash,
 	  "it turns back, and you read the lost motion from a dial" },
 	{ "gap", ONCE, GAP, tour_sense,

@@ -18,6 +18,7 @@
 
 #define SLOWLY		0.05		/* of the fastest speed; first of all */
 #define FASTER		0.2
+#define WAVE		0.8		/* swell of a speed, of its mean */
 #define SAID_CHARS	240
 
 struct tour {
@@ -85,13 +86,21 @@ struct tour_trace {
 	double period_s;
 };
 
+struct tour_way {
+	double mm, share;		/* of its fastest */
+	double hz;			/* its speed swells and falls so often;
+					 * 0: not */
+};
+
 /**
- * tour_move() - the axis of the step goes by @mm, at @share of its fastest,
- * while a person holds a key, or because a script says go.
+ * tour_go(), tour_move() - the axis of the step goes by so many mm while a
+ * person holds a key, or because a script says go.
  *
  * @t: what it did is added to this; may be NULL.
  * Return: mm that it went; NAN: it did not, and tour_wrong() has said why.
  */
+double tour_go(struct tour *w, const struct tour_way *way,
+	       struct tour_trace *t);
 double tour_move(struct tour *w, double mm, double share,
 		 struct tour_trace *t);
 
@@ -122,6 +131,9 @@ typedef void tour_fn(struct tour *w);
 tour_fn tour_estop, tour_drives, tour_power, tour_direction, tour_scale,
 	tour_limits, tour_home, tour_following, tour_backlash, tour_sense,
 	tour_generator, tour_watchdog, tour_latency, tour_cut;
+
+/* identify.c: keys of [axis.*] by enum interp_identify_id. */
+extern const char *const ctl_identify_key[];
 
 /* -- commission_report.c --------------------------------------------------- */
 

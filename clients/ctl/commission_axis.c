@@ -8,6 +8,7 @@
 
 #include "interp/identify.h"
 
+#include <complex.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,10 @@
 #define FINE		1e6		/* increments that a ratio is told in */
 #define PULSES_MOST	1e8
 #define HOMES		10
+#define WAVE_HZ		1.0		/* the first of */
+#define WAVES		4		/* ... so many, each twice the last */
+#define WAVE_TIMES	5.0		/* in a motion */
+#define HALF_POWER	0.7071
 
 static const struct interp_axis_limits *limits_of(const struct tour *w)
 {
@@ -373,44 +378,135 @@ static void plot_trace(struct tour *w, const struct tour_trace *t)
 					   step_s, behind });
 }
 
-static void tell_following(struct tour *w, const struct tour_trace *t)
+static double most_behind_mm(const struct tour_trace *t)
 {
-	struct interp_identified d;
 	double most = 0;
 
 	for (size_t i = 0; i < t->n; i++)
 		most = fmax(most, fabs(behind_mm(t, i)));
-	if (most <= 2 * limits_of(w)->pulse_mm) {
-		tour_good(w, "%c is where it is sent, within %.2f um",
-			  tour_letter(w), 1e3 * most);
-		return;
+	return most;
+}
+
+/* Of the speed in so many samples; its ends count little (Hann), because what
+ * an axis does there came from before. */
+static double complex swing(const double *mm, size_t n, double step)
+{
+	double complex sum = 0;
+
+	for (size_t i = 1; i < n; i++)
+		sum += (mm[i] - mm[i - 1]) * cexp(-I * step * (double)i) *
+		       (1 - cos(2 * M_PI * (double)i / (double)n));
+	return sum;
+}
+
+/* What comes of what is asked for at so many Hz: 1 is all of it. */
+static double complex response(const struct tour_trace *t, size_t from,
+			       double hz)
+{
+	const double step = 2 * M_PI * hz * t->period_s;
+	const size_t n = t->n - from;
+
+	return swing(t->actual + from, n, step) /
+	       swing(t->sent + from, n, step);
+}
+
+/* Where it goes HALF_POWER of what is asked, on a line between two of them. */
+static double bandwidth_hz(const double hz[2], const double share[2])
+{
+	return hz[0] * pow(hz[1] / hz[0], (share[0] - HALF_POWER) /
+					  (share[0] - share[1]));
+}
+
+static double fastest_mm_s(const struct tour_trace *t)
+{
+	double most = 0;
+
+	for (size_t i = 10; i < t->n; i++)
+		most = fmax(most, fabs(t->sent[i] - t->sent[i - 10]));
+	return most / (10 * t->period_s);
+}
+
+/* To and fro in waves, ever faster.  Return: its bandwidth; 0: it is above. */
+static double wave(struct tour *w, struct tour_trace *t)
+{
+	const double top_mm_s = fastest_mm_s(t) / (1 + WAVE);
+	double share[2] = { 1, 1 }, hz[2] = { 0.1, WAVE_HZ }, found = 0;
+	json_t *y = json_array();
+
+	for (int i = 0; i < WAVES; i++, hz[0] = hz[1], hz[1] *= 2) {
+		const double v_mm_s = fmin(top_mm_s, way(w, LONG_MM) / 2 *
+						     hz[1] / WAVE_TIMES);
+		const double mm = v_mm_s * WAVE_TIMES / hz[1];
+		const struct tour_way go = {
+			i % 2 ? -mm : mm, v_mm_s / limits_of(w)->v_max_mm_s,
+			hz[1]
+		};
+		const size_t from = t->n;
+
+		if (isnan(tour_go(w, &go, t))) {
+			json_decref(y);
+			return NAN;
+		}
+		share[0] = share[1];
+		share[1] = cabs(response(t, from, hz[1]));
+		json_array_append_new(y, json_real(100 * share[1]));
+		if (found == 0 && share[1] < HALF_POWER)
+			found = bandwidth_hz(hz, share);
 	}
+	tour_plot(w, &(struct tour_plot) { "what comes of 1 2 4 8 Hz, %",
+					   "octaves", 1, y });
+	return found;
+}
+
+/* What is told, into the machine file; its lost motion is a step of its own. */
+static void write_loop(struct tour *w, const struct interp_identified *d)
+{
+	for (int i = 0; i < INTERP_IDENTIFY_BACKLASH; i++)
+		if (d->told[i] && !write_number(w, ctl_identify_key[i],
+						d->value[i]))
+			return;
+}
+
+static void tell_following(struct tour *w, const struct tour_trace *t,
+			   double hz)
+{
+	const double most = most_behind_mm(t);
+	char band[40] = "above 8 Hz";
+	struct interp_identified d;
+
+	if (hz > 0)
+		snprintf(band, sizeof(band), "%.2g Hz", hz);
 	if (interp_identify(&(struct interp_identify_trace) {
 			.target_mm = t->sent, .actual_mm = t->actual,
 			.n = t->n, .period_s = t->period_s }, &d) < 0 ||
 	    !d.told[INTERP_IDENTIFY_GAIN]) {
-		tour_good(w, "%c is behind by at most %.1f um; the motion does "
-			  "not tell its loop", tour_letter(w), 1e3 * most);
+		tour_good(w, "%c is behind by at most %.1f um, its bandwidth "
+			  "is %s; the motion does not tell its loop",
+			  tour_letter(w), 1e3 * most, band);
 		return;
 	}
-	tour_good(w, "%c is behind by at most %.1f um; the gain of its loop is "
-		  "%.3g 1/s, its bandwidth %.3g Hz", tour_letter(w),
-		  1e3 * most, d.value[INTERP_IDENTIFY_GAIN],
-		  d.value[INTERP_IDENTIFY_GAIN] / (2 * M_PI));
-	write_number(w, "loop_gain_1_s", d.value[INTERP_IDENTIFY_GAIN]);
+	tour_good(w, "%c is behind by at most %.1f um, its bandwidth is %s; "
+		  "the gain of its loop is %.3g 1/s, and its model is off by "
+		  "%.2g um", tour_letter(w), 1e3 * most, band,
+		  d.value[INTERP_IDENTIFY_GAIN], 1e3 * d.left_mm);
+	write_loop(w, &d);
 }
 
 void tour_following(struct tour *w)
 {
 	const double mm = way(w, LONG_MM) / 2;
 	struct tour_trace t = { .n = 0 };
-	double went = 0;
+	double went = 0, hz;
 
 	for (int i = 0; i < 4 && !isnan(went); i++)
 		went = tour_move(w, i % 2 ? -mm : mm, i < 2 ? SLOWLY : FASTER,
 				 &t);
-	if (!isnan(went) && t.n > 1)
-		tell_following(w, &t);
+	if (!isnan(went) && t.n > 1 &&
+	    most_behind_mm(&t) <= 2 * limits_of(w)->pulse_mm)
+		tour_good(w, "%c is where it is sent, within %.2f um",
+			  tour_letter(w), 1e3 * most_behind_mm(&t));
+	else if (!isnan(went) && t.n > 1 && !isnan(hz = wave(w, &t)))
+		tell_following(w, &t, hz);
 	plot_trace(w, &t);
 	free(t.sent);
 	free(t.actual);

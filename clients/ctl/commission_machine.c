@@ -5,15 +5,27 @@
 #include "commission.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 #include <sysexits.h>
 #include <time.h>
+#include <unistd.h>
 
 #define UP_S		15.0		/* until drives are up */
 #define STEADY_S	2.0		/* ... and for as long */
 #define LATENCY_S	600
 #define NOISE		0.1		/* of the step from open to touching */
+#define LOADS_MOST	64
+#define LOAD_BYTES	(4 << 20)
+
+struct load {
+	int n;
+	pid_t pid[LOADS_MOST];
+};
 
 static bool is_stopped(struct tour *w, double seconds)
 {
@@ -218,16 +230,99 @@ static void sleep_s(double seconds)
 		nanosleep(&pause, NULL);
 }
 
+/* Memory, system calls and a disk, until its parent kills it or dies. */
+static void work_hard(pid_t parent)
+{
+	static char a[LOAD_BYTES], b[LOAD_BYTES];
+	FILE *f = tmpfile();
+
+	prctl(PR_SET_PDEATHSIG, SIGKILL);
+	while (getppid() == parent) {
+		memcpy(a, b, sizeof(a));
+		b[a[0] & 1] ^= 1;
+		if (f && fwrite(a, sizeof(a), 1, f) == 1 && fflush(f) == 0)
+			fdatasync(fileno(f));
+		if (f)
+			rewind(f);
+	}
+	_exit(0);
+}
+
+static void load_begin(struct load *l)
+{
+	const pid_t parent = getpid();
+
+	l->n = (int)fmin(LOADS_MOST, (double)sysconf(_SC_NPROCESSORS_ONLN));
+	for (int i = 0; i < l->n; i++) {
+		l->pid[i] = fork();
+		if (l->pid[i] == 0)
+			work_hard(parent);
+	}
+}
+
+static void load_end(const struct load *l)
+{
+	for (int i = 0; i < l->n; i++) {
+		if (l->pid[i] <= 0)
+			continue;
+		kill(l->pid[i], SIGKILL);
+		waitpid(l->pid[i], NULL, 0);
+	}
+}
+
+/* Beside edmd, on its core, a priority below it. */
+static FILE *cyclictest_begin(const struct tour *w, double seconds)
+{
+	const long cpu = (long)w->config.cpu;
+	char line[160], on[32] = "";
+
+	if (cpu >= 0)
+		snprintf(on, sizeof(on), "-a%ld", cpu);
+	snprintf(line, sizeof(line), "exec cyclictest -q -m -t1 -p%d -i%d %s "
+		 "-D%ds 2>/dev/null", (int)w->config.priority - 1,
+		 (int)(config_period_ns(&w->config) / 1000), on,
+		 (int)ceil(seconds));
+	return popen(line, "re");
+}
+
+/* Return: us, of "... Max:  17"; -1: it is not there, or may not. */
+static long cyclictest_end(FILE *f)
+{
+	char line[256];
+	long most = -1;
+
+	while (f && fgets(line, sizeof(line), f)) {
+		const char *at = strstr(line, "Max:");
+
+		most = at ? strtol(at + 4, NULL, 10) : most;
+	}
+	if (f)
+		pclose(f);
+	return most;
+}
+
+static void put_cyclictest(char to[100], long us)
+{
+	if (us < 0)
+		snprintf(to, 100, "cyclictest (rt-tests) did not run");
+	else
+		snprintf(to, 100, "cyclictest, a priority below it, %ld us",
+			 us);
+}
+
 void tour_latency(struct tour *w)
 {
 	uint32_t before[SHM_LATENCY_BINS], most = 0;
 	double seconds = LATENCY_S, period_us;
 	json_t *y = json_array();
 	struct shm_snapshot s;
+	struct load load;
+	char other[100];
+	FILE *f;
 
-	if (!tour_number(w, LATENCY_S, &seconds, "let the host work hard now "
-			 "(stress-ng, a copy of a disk); for how many "
-			 "seconds") ||
+	if (!tour_number(w, LATENCY_S, &seconds, "the host works hard "
+			 "meanwhile, on all cores, in memory and on the disk; "
+			 "for how many seconds") ||
 	    !shm_snapshot(w->status, &s)) {
 		json_decref(y);
 		return;
@@ -235,7 +330,11 @@ void tour_latency(struct tour *w)
 	period_us = (double)s.period_ns / 1e3;
 	for (int i = 0; i < SHM_LATENCY_BINS; i++)
 		before[i] = w->status->latency_us[i];
+	load_begin(&load);
+	f = cyclictest_begin(w, seconds);
 	sleep_s(seconds);
+	put_cyclictest(other, cyclictest_end(f));
+	load_end(&load);
 	for (uint32_t i = 0; i < SHM_LATENCY_BINS; i++) {
 		const uint32_t n = w->status->latency_us[i] - before[i];
 
@@ -245,12 +344,12 @@ void tour_latency(struct tour *w)
 	tour_plot(w, &(struct tour_plot) { "log10 of wakes", "us late", 1, y });
 	if (most < SHM_LATENCY_BINS - 1 && most < period_us / 2)
 		tour_good(w, "edmd woke %u us late at most, of a period of "
-			  "%.0f us", most, period_us);
+			  "%.0f us; %s", most, period_us, other);
 	else
 		tour_wrong(w, "edmd woke %u us late%s, of a period of %.0f us; "
-			   "edmctl doctor tells what the host lacks", most,
+			   "%s; edmctl doctor tells what the host lacks", most,
 			   most == SHM_LATENCY_BINS - 1 ? " or more" : "",
-			   period_us);
+			   period_us, other);
 }
 
 /* Homed, or a person has seen that it is where it is shown. */

@@ -21,6 +21,7 @@
 #define FIRST_S		0.7		/* until a key is repeated at first */
 #define REPEAT_S	0.15		/* ... and then */
 #define STAND_S		10.0		/* until an axis stands */
+#define SETTLE_S	0.3		/* ... and what lags is there too */
 #define GAP_S		1.0
 #define PAUSE_NS	10000000
 #define SAMPLES_MAX	(1 << 20)
@@ -108,7 +109,9 @@ static bool is_held(struct held *h)
 struct motion {
 	struct tour *walk;
 	struct held held;
-	double from_mm, way_mm;
+	double from_mm, mm_s;
+	const struct tour_way *way;
+	double begun_s;			/* 0: not yet */
 	struct shm_follow follow;
 	struct tour_trace *trace;
 	double pulse_mm;
@@ -137,13 +140,18 @@ static void drain(struct motion *m)
 			return;
 }
 
-static bool goes_on(void *arg)
+static double speed(void *arg)
 {
 	struct motion *m = arg;
+	const double now_s = talk_now_s();
 
 	drain(m);
-	return fabs(tour_place(m->walk) - m->from_mm) < m->way_mm &&
-	       (!m->walk->by_hand || is_held(&m->held));
+	m->begun_s = m->begun_s > 0 ? m->begun_s : now_s;
+	if (!(fabs(tour_place(m->walk) - m->from_mm) < fabs(m->way->mm)) ||
+	    (m->walk->by_hand && !is_held(&m->held)))
+		return NAN;
+	return m->mm_s * (1 + WAVE * sin(2 * M_PI * m->way->hz *
+					 (now_s - m->begun_s)));
 }
 
 static bool say_go(struct tour *w, double mm, double mm_s)
@@ -171,14 +179,18 @@ static double stand(struct motion *m)
 {
 	const double until_s = talk_now_s() + STAND_S;
 	const struct timespec pause = { .tv_nsec = PAUSE_NS };
+	double moved_s = talk_now_s();
 	struct shm_snapshot s;
 
 	do {
 		nanosleep(&pause, NULL);
 		drain(m);
-	} while (talk_now_s() < until_s &&
-		 shm_snapshot(m->walk->status, &s) &&
-		 s.state != SHM_IDLE && s.state != SHM_FAULT);
+		if (!shm_snapshot(m->walk->status, &s))
+			break;
+		if (s.state != SHM_IDLE && s.state != SHM_FAULT)
+			moved_s = talk_now_s();
+	} while (talk_now_s() < fmin(until_s, moved_s +
+				     (m->trace ? SETTLE_S : 0)));
 	return tour_place(m->walk) - m->from_mm;
 }
 
@@ -196,18 +208,20 @@ static void begin(struct motion *m)
 		m->trace->period_s = (double)s.period_ns * 1e-9;
 }
 
-double tour_move(struct tour *w, double mm, double share,
-		 struct tour_trace *t)
+double tour_go(struct tour *w, const struct tour_way *way,
+	       struct tour_trace *t)
 {
 	const char axis[2] = { tour_letter(w), '\0' };
-	const double v = w->config.axes.axis[w->axis].v_max_mm_s * share;
-	struct motion m = { .walk = w, .way_mm = fabs(mm), .trace = t };
+	const double v = w->config.axes.axis[w->axis].v_max_mm_s * way->share;
+	struct motion m = { .walk = w, .way = way, .trace = t,
+			    .mm_s = copysign(v, way->mm) };
 	char said[200] = "";
 	char ill[SAID_CHARS];
 	const struct talk_status *s;
+	double mm;
 	int err;
 
-	if (!say_go(w, mm, v))
+	if (!say_go(w, way->mm, v))
 		return NAN;
 	begin(&m);
 	if (w->by_hand) {
@@ -215,8 +229,7 @@ double tour_move(struct tour *w, double mm, double share,
 		wait_key(&m);
 	}
 	err = m.held.ended ? 0 : ctl_press(w->ctl, &(struct ctl_press) {
-		.axis = axis, .mm_s = copysign(v, mm), .more = goes_on,
-		.arg = &m }, said, sizeof(said));
+		.axis = axis, .mm_s = speed, .arg = &m }, said, sizeof(said));
 	mm = stand(&m);
 	if (w->by_hand)
 		tcsetattr(STDIN_FILENO, TCSAFLUSH, &m.held.was);
@@ -230,6 +243,12 @@ double tour_move(struct tour *w, double mm, double share,
 		tour_wrong(w, "%c does not move: %s", *axis, said);
 	}
 	return err || strcmp(s->state, "fault") == 0 ? NAN : mm;
+}
+
+double tour_move(struct tour *w, double mm, double share,
+		 struct tour_trace *t)
+{
+	return tour_go(w, &(struct tour_way) { mm, share, 0 }, t);
 }
 
 /* It is in the state home from the answer on. */

@@ -83,11 +83,11 @@ int ctl_override(struct ctl *c);
 int ctl_jog(struct ctl *c);
 int ctl_jog_on(struct ctl *c);
 
-/* An axis that is to move as long as @more says so; NULL: until Ctrl-C. */
+/* An axis that is to move: @mm_s tells how fast, time and again, and NAN that
+ * it is to stop.  Another direction is another press. */
 struct ctl_press {
 	const char *axis;
-	double mm_s;
-	bool (*more)(void *arg);
+	double (*mm_s)(void *arg);
 	void *arg;
 };
 

@@ -102,7 +102,7 @@ static int read_rows(struct csv *f, const char *path, struct columns *t)
 	return 0;
 }
 
-static const char *const keys[INTERP_NIDENTIFY] = {
+const char *const ctl_identify_key[INTERP_NIDENTIFY] = {
 	"loop_gain_1_s", "loop_hz", "loop_damping", "loop_delay_s",
 	"loop_feedforward", "friction_mm_s", "friction_s", "backlash_mm",
 };
@@ -113,7 +113,7 @@ static void print_keys(const struct interp_identified *d, int axis)
 	printf("\n[axis.%c]\n", INTERP_AXIS_LETTERS[axis]);
 	for (int i = 0; i < INTERP_NIDENTIFY; i++)
 		if (d->told[i])
-			printf("%s = %.6g\n", keys[i], d->value[i]);
+			printf("%s = %.6g\n", ctl_identify_key[i], d->value[i]);
 }
 
 static void print_text(const struct interp_identified *d, int axis)
@@ -146,7 +146,7 @@ static json_t *to_json(const struct interp_identified *d, int axis)
 
 	for (int i = 0; i < INTERP_NIDENTIFY; i++)
 		if (d->told[i])
-			json_object_set_new(j, keys[i],
+			json_object_set_new(j, ctl_identify_key[i],
 				json_pack("{s:f, s:f}", "value", d->value[i],
 					  "sigma", d->sigma[i]));
 	return j;

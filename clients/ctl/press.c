@@ -68,24 +68,31 @@ int ctl_press(struct ctl *c, const struct ctl_press *asked, char *said,
 {
 	const uint32_t number = 1 + randombytes_uniform(VERB_PRESS_MAX);
 	struct press p = { .ctl = c, .axis = asked->axis };
+	double mm_s;
 
 	while (!talk_interrupted() && p.code == 0 &&
-	       (!asked->more || asked->more(asked->arg))) {
-		say(&p, asked->mm_s, number);
+	       !isnan(mm_s = asked->mm_s(asked->arg))) {
+		say(&p, mm_s, number);
 		wait_a_bit(&p);
 	}
 	/* If this message is lost, the axis stops a little later. */
 	say(&p, 0, number);
+	talk_forget(c->talk, &p);
 	snprintf(said, size, "%s", p.reason);
 	/* A refusal after the axis has moved means that the travel ended
 	 * there. */
 	return p.begun ? 0 : p.code;
 }
 
+static double until_interrupted(void *arg)
+{
+	return *(const double *)arg;
+}
+
 int ctl_jog_on(struct ctl *c)
 {
 	char *end, said[200];
-	const double mm_s = strtod(c->value, &end);
+	double mm_s = strtod(c->value, &end);
 	int err;
 
 	if (end == c->value || *end || !isfinite(mm_s) || mm_s == 0) {
@@ -98,7 +105,8 @@ int ctl_jog_on(struct ctl *c)
 	fprintf(stderr, "edmctl: %s moves until Ctrl-C\n", c->arg);
 	talk_catch_signals();
 	err = ctl_press(c, &(struct ctl_press) { .axis = c->arg,
-						 .mm_s = mm_s },
+						 .mm_s = until_interrupted,
+						 .arg = &mm_s },
 			said, sizeof(said));
 	if (err)
 		fprintf(stderr, "edmctl: jog-on: %s\n", said);
