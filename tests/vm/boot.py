@@ -282,7 +282,7 @@ drive_inputs = estop:!16
 v_max_mm_s = 20
 """
 
-STRICT_MARKS = "following_mm = 0.05\n" + "".join(
+STRICT_MARKS = GAP_FRAMES + "".join(
     f"[axis.{axis}]\ndrive_inputs = {inputs}\nhome_method = switch-index\n"
     f"home_dir = -\nhome_at_mm = {at}\nhome_fast_mm_s = 20\n"
     "home_slow_mm_s = 1\n" for axis, inputs, at in (

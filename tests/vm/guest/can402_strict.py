@@ -313,6 +313,7 @@ def marks():
     }) as s:
         for n in 1, 2:
             until_log(s, f"(node {n}) is up", 30)
+        s.tell("gap", 80)
         out = s.more["out"] = {}
 
         def home(what, axis):
