@@ -13,6 +13,7 @@
 #include "names.h"
 #include "sink.h"
 #include "standard.h"
+#include "submission.h"
 #include "table.h"
 #include "tool.h"
 #include "topic.h"
@@ -364,6 +365,9 @@ static int run_submit(struct fleet *f, const struct options *o,
 		return cmdline_refuse("edm-fleet", "--id", o->id,
 				      "--machine NAME with it: only one "
 				      "machine knows whether it has this id");
+	if (o->id && strlen(o->id) >= SUBMISSION_ID_MAX)
+		return cmdline_refuse("edm-fleet", "--id", o->id,
+				      "1 to 63 of A-Z a-z 0-9 . _ -");
 	err = fleet_open(f, o->domain);
 	if (err == 0)
 		err = dispatch_run(f->participant, &f->hall, &x);

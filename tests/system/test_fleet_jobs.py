@@ -168,6 +168,7 @@ def test_a_refusal_of_a_named_machine_names_line_and_file(cell, tmp_path):
     (["submit", "x"], 64, "--machine NAME or --any"),
     (["submit", "x", "--any", "--machine", "y"], 64, "either"),
     (["submit", "x", "--any", "--id", "y"], 64, "only one machine"),
+    (["submit", "x", "--machine", "y", "--id", 64 * "z"], 64, "1 to 63"),
     (["submit", "x", "--any", "--hold", "--start"], 64, "one of them"),
     (["submit", "x", "--machine", "a b"], 64, "1 to 31"),
     (["submit", "/nonexistent", "--any"], 66, "a file of NC code"),
