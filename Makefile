@@ -347,7 +347,7 @@ $(B)/edm-plan: $(call obj,$(PLAN)) $(PLAN_CC:%.cc=$(B)/%.o) $(COMPILING_O) $(CON
 
 # Of edm-plan, without its main().
 PLAN_CORE := $(call obj,$(addprefix clients/plan/,mesh.c tree.c tri.c \
-	     apart.c box.c near.c near_set.c motion.c sweep.c prove.c \
+	     apart.c box.c near.c near_set.c motion.c sweep.c prove.c proved.c \
 	     spread.c))
 
 $(B)/unit/test_plan_core $(B)/unit/test_plan_bounds $(B)/unit/test_plan_near: $(PLAN_CORE)

@@ -208,7 +208,9 @@ int job_load(struct job *j, const struct job_options *o)
 		err = load_bodies(j);
 	if (err)
 		return err;
-	j->bodies = (struct bodies) { &j->part_tree, &j->tool_tree };
+	proved_init(&j->proved);
+	j->bodies = (struct bodies) { &j->part_tree, &j->tool_tree,
+				      &j->proved };
 	motion_init(&j->motion, &j->kin, &j->tool);
 	choose_clearance(j);
 	return 0;

@@ -8,6 +8,7 @@
 #define PLAN_JOB_H
 
 #include "prove.h"
+#include "proved.h"
 #include "route.h"
 
 struct job_options {
@@ -37,6 +38,7 @@ struct job {
 	struct mesh_findings part_found, tool_found;
 	struct tree part_tree, tool_tree;
 	struct bodies bodies;
+	struct proved proved;
 	struct machine_motion motion;
 	double clear_mm;		/* asked for */
 	double chord_mm;		/* of both meshes, added to it */

@@ -34,8 +34,11 @@ struct near_pair {
 	double p[3], q[3];		/* on the part, on the electrode */
 };
 
+struct proved;
+
 struct bodies {
 	const struct tree *part, *tool;
+	struct proved *proved;		/* blocks of them; NULL: not kept */
 };
 
 /**

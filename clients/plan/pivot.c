@@ -193,7 +193,8 @@ static int shifted_job(const struct job *j, const double s[SHIFTS],
 	if (shifted_body(&j->part, s, &ret->part, &ret->part_tree) ||
 	    shifted_body(&j->tool, s + 3, &ret->tool, &ret->tool_tree))
 		return -ENOMEM;
-	ret->bodies = (struct bodies) { &ret->part_tree, &ret->tool_tree };
+	ret->bodies = (struct bodies) { &ret->part_tree, &ret->tool_tree,
+					NULL };
 	motion_init(&ret->motion, &ret->kin, &ret->tool);
 	return 0;
 }

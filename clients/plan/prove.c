@@ -4,6 +4,7 @@
  */
 #include "prove.h"
 
+#include "proved.h"
 #include "sweep.h"
 
 #include <float.h>
@@ -107,10 +108,16 @@ bool prove_block(const struct bodies *bodies, const struct block *b,
 	struct asked asked = { c, b };
 	struct sweep s = { .bodies = bodies, .block = b, .keep = keep_from,
 			   .eps_mm = PROVE_EPS_MM, .arg = &asked };
-	const int kept = sweep_block(&s);
+	int kept;
 
+	/* In an end zone more than c->mm says is asked, and less. */
+	if (!(c->zone_mm > 0) && proved_keeps(bodies->proved, b, c->mm))
+		return true;
+	kept = sweep_block(&s);
 	p->queries += s.poses;
 	p->given_up = kept < 0;
+	if (kept > 0 && !(c->zone_mm > 0))
+		proved_put(bodies->proved, b, c->mm);
 	if (kept == 0) {
 		p->t = s.t;
 		p->pair = s.pair;
@@ -235,5 +242,8 @@ double prove_least(const struct bodies *bodies, const struct block *b,
 	descend(&l, p->t);
 	kept = l.keep_mm > 0 ? sweep_block(&s) : 0;
 	p->queries += s.poses;
-	return kept > 0 ? l.keep_mm : -1;
+	if (kept <= 0)
+		return -1;
+	proved_put(bodies->proved, b, l.keep_mm);
+	return l.keep_mm;
 }

@@ -103,7 +103,7 @@ static inline void make_scene(struct scene *s, int i)
 
 	make_lump(&s->part, 8, 10);
 	make_lump(&s->tool, 6, 4);
-	s->bodies = (struct bodies) { &s->part.t, &s->tool.t };
+	s->bodies = (struct bodies) { &s->part.t, &s->tool.t, NULL };
 	interp_kin_clear(&s->kin);
 	assert_int_equal(interp_kin_parse(&s->kin, chains[i % 5], &d), 0);
 	motion_init(&s->motion, &s->kin, &s->tool.m);

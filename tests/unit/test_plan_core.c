@@ -5,6 +5,7 @@
  * EDM_SEED repeats a run, EDM_RUNS makes it longer.
  */
 #include "plan_scene.h"
+#include "proved.h"
 
 /* -- Triangles ------------------------------------------------------------ */
 
@@ -280,7 +281,7 @@ static void a_thin_wall_between_samples_is_met(void **state)
 	tree_build(&s.part.t, &s.part.m);
 	tree_build(&s.tool.t, &s.tool.m);
 	mesh_bounds(&s.tool.m);
-	s.bodies = (struct bodies) { &s.part.t, &s.tool.t };
+	s.bodies = (struct bodies) { &s.part.t, &s.tool.t, NULL };
 	interp_kin_clear(&s.kin);
 	motion_init(&s.motion, &s.kin, &s.tool.m);
 	block_init(&b, &s.motion, from, to);
@@ -291,6 +292,42 @@ static void a_thin_wall_between_samples_is_met(void **state)
 	assert_true(prove_least(&s.bodies, &b, PROVE_FINE_MM, &p) < 0);
 	tree_free(&s.part.t);
 	tree_free(&s.tool.t);
+}
+
+/* What is known of a block holds for it alone, and no more than it keeps. */
+static void a_block_is_proved_once(void **state)
+{
+	static struct proved known;
+	double to[INTERP_NAXES] = { 0, 0, 300 };
+	const double from[INTERP_NAXES] = { 0, 0, 200 };
+	struct scene s;
+	struct proof p = { 0 };
+	struct clearance c;
+	struct block b, other;
+	uint64_t poses;
+
+	(void)state;
+	make_scene(&s, 4);
+	proved_init(&known);
+	s.bodies.proved = &known;
+	block_init(&b, &s.motion, from, to);
+	clearance_init(&c, 1);
+	assert_true(prove_block(&s.bodies, &b, &c, &p));
+	poses = p.queries;
+	assert_true(poses > 0);
+	assert_true(prove_block(&s.bodies, &b, &c, &p));
+	clearance_init(&c, 0.5);
+	assert_true(prove_block(&s.bodies, &b, &c, &p));
+	assert_int_equal(p.queries, poses);
+	assert_false(proved_keeps(&known, &b, 1.5));
+	to[0] = 0.001;
+	block_init(&other, &s.motion, from, to);
+	assert_false(proved_keeps(&known, &other, 0.5));
+	for (int i = 0; i < PROVED_MAX; i++)
+		proved_put(&known, &other, 2);
+	assert_true(proved_keeps(&known, &other, 2));
+	assert_false(proved_keeps(&known, &b, 0.5));
+	drop_scene(&s);
 }
 
 int main(void)
@@ -304,6 +341,7 @@ int main(void)
 		cmocka_unit_test(a_clearance_that_falls_is_kept),
 		cmocka_unit_test(what_a_pose_refutes_is_not_proved),
 		cmocka_unit_test(a_thin_wall_between_samples_is_met),
+		cmocka_unit_test(a_block_is_proved_once),
 	};
 
 	scene_seed();
