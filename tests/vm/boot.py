@@ -282,12 +282,11 @@ drive_inputs = estop:!16
 v_max_mm_s = 20
 """
 
-STRICT_MARKS = GAP_FRAMES + "".join(
+STRICT_MARKS = "following_mm = 0.05\n" + "".join(
     f"[axis.{axis}]\ndrive_inputs = {inputs}\nhome_method = switch-index\n"
     f"home_dir = -\nhome_at_mm = {at}\nhome_fast_mm_s = 20\n"
     "home_slow_mm_s = 1\n" for axis, inputs, at in (
-        ("X", "home:2 contact:5", -3), ("Y", "home:2", 4))) + (
-            "[probe]\nfeed_mm_s = 2\nfine_mm_s = 0.1\n")
+        ("X", "home:2", -3), ("Y", "home:2", 4)))
 
 COMMISSION = drives("XYZ", GAP_FRAMES + """[axis.X]
 drive_inputs = limit_low:0 limit_high:1 home:2

@@ -128,7 +128,6 @@ def strict():
         "strict-inputs.ini": drives("XY", STRICT_INPUTS, "no"),
         "strict-inputs.ngc": "G21 G90\nG1 X-1 Y4 F60\nM30\n",
         "strict-marks.ini": drives("XY", STRICT_MARKS, "no"),
-        "strict-marks.ngc": "G21 G91\nG38.2 X60 F120\nM30\n",
         "strict-asked.ini": drives("XYZ", STRICT_HOME, "no", falls="Z"),
         "strict-commission.ini": COMMISSION,
         "first.ngc": "G21 G91\nG1 X-0.3 F60\nM30\n",

@@ -359,24 +359,6 @@ def test_the_place_of_an_index_mark_is_exact(marks, axis):
     assert marks.d["offences"] == []
 
 
-def test_a_contact_at_a_drive_is_probed(marks):
-    out = marks.d["out"]
-    assert "program 1 ended: done" in marks.log
-    mm = -3 + (200000 - MARKS["X"][1]) * 5000 / 524288 / 1000
-    assert 0 <= out["probe: state"]["pos_mm"][0] - mm < 0.01
-
-
-def test_a_search_for_a_mark_can_be_ended(marks):
-    out = marks.d["out"]
-    assert out["asked"][0] == 0
-    assert json.loads(out["hold: off"][1])["value"] == 0
-    assert "X" in out["hold: lost"]
-    for what in "hold: home", "off: home", "marks again":
-        assert out[what][0] == 0, (what, out[what])
-        assert abs(off_mark_mm(marks, what, "X")) < 0.0016
-    assert out["no marks: state"]["fault"] == "home-not-found"
-
-
 def test_a_limit_at_a_drive_stops_motion_that_way_only(inputs):
     out = inputs.d["out"]
     assert out["to high: state"]["fault"] == "limit-switch"

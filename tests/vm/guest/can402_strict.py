@@ -302,18 +302,16 @@ def inputs():
 
 
 def marks():
-    """Home switches at the drives, and index marks that they keep by themselves;
-    then what ends the search."""
+    """Home switches at the drives, and index marks that they keep by themselves."""
     width = {"width": 40, "task": 0.03}
     with scene("strict-marks", {
-        1: {"inputs": {"2": -334500, "5": [200000]},
+        1: {"inputs": {"2": -334500},
             "probe": {"every": 20000, "from": 13000, "toggles": True, **width}},
         2: {"inputs": {"2": [20000]},
             "probe": {"every": 9000, "from": 700, "keeps": True, **width}},
     }) as s:
         for n in 1, 2:
             until_log(s, f"(node {n}) is up", 30)
-        s.tell("gap", 80)
         out = s.more["out"] = {}
 
         def home(what, axis):
@@ -328,42 +326,6 @@ def marks():
             if n < 2:
                 out[f"away {n}"] = [s.ctl("jog", axis, "1", "--wait")
                                     for axis in "XY"]
-        out["probe"] = job(s, "strict-marks")
-        s.until("probe ends", 60, state="idle")
-        out["probe: state"] = s.status()
-        out["away"] = s.ctl("jog", "X", "-0.5", "--wait")
-
-        # While it looks for the mark: a person's question, hold, power.
-        def seeks():
-            s.ctl("home", "X")
-            end = time.monotonic() + 40
-            while time.monotonic() < end:
-                answer = s.ctl("drive", "get", "X", "60b8")
-                if "0x0015" in answer[1]:
-                    return answer
-                time.sleep(0.02)
-            return s.in_vain("waited in vain for 60B8")
-
-        out["asked"] = seeks()
-        s.ctl("hold")
-        s.until("hold: idle", 10, state="idle")
-        time.sleep(0.5)
-        out["hold: off"] = s.ctl("--json", "drive", "get", "X", "60b8")
-        out["hold: lost"] = s.status()["lost"]
-        home("hold: home", "X")
-        seeks()
-        s.tell("off", 1)
-        s.until("off: fault", 10, state="fault")
-        s.tell("on", 1)
-        time.sleep(1)
-        out["off: reset"] = s.ctl("reset")
-        time.sleep(3)
-        home("off: home", "X")
-        s.tell("marks", 1, "0")
-        home("no marks", "X")
-        s.tell("marks", 1, "1")
-        out["no marks: reset"] = s.ctl("reset")
-        home("marks again", "X")
 
 
 def interpolated():

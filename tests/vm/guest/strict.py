@@ -23,8 +23,7 @@ drives.py, no CANopen package.  TRAITS is JSON, node -> what is particular:
     probe      a touch probe 1, with index marks each {"every": increments}, as wide
                as "width" and the first from "from" on; it looks at 60B8 each "task"
                s; "keeps": the first time it is switched on after a mark, it still
-               has that one; "toggles": bit 6 is another with each mark; "lost":
-               it does not know the place of a mark
+               has that one; "toggles": bit 6 is another with each mark
     home       it homes by itself in mode 6, with {"at": its true place; "stale":
                bit 12 is 1 from the beginning; "late": SYNCs until it begins;
                "leave": it counts anew only when it leaves the mode; "torque": it
@@ -35,7 +34,7 @@ COMMANDS is a FIFO, a line for each thing to do:
     deaf N, it hears no SYNC | hears N | weak N, its supply breaks down | strong N |
     slow N OBJECT SECONDS | invert N BIT | off N | on N | push N INCREMENTS | mode N M | bits N SET CLEAR | emcy N CODE
     gap V LOUD: with more noise |
-    marks N 0 or 1, it sees none; fails N, its next homing; warn N CODE [MAKER], an emergency without a fault, MAKER 10 digits | jam N | unjam N |
+    fails N, its next homing; warn N CODE [MAKER], an emergency without a fault, MAKER 10 digits | jam N | unjam N |
     clip N, bit 11 and it stands | free N | gap V | nmt BYTE BYTE | report FILE | quit
 where FILE leaves the true places alone.  A report has a row for each SYNC: its time, the generator's flags, and of each
 drive its state, where the axis truly is, what the drive counts, and 6060.
@@ -678,7 +677,7 @@ class Probe:
         else:
             edge = -((begin - was - 1) // every) * every + begin
             met = edge <= now
-        if not met or self.traits.get("lost"):
+        if not met:
             return
         self.drive.bus.marks.append((self.drive.node, edge))
         self.place = edge - self.drive.offset
@@ -800,8 +799,6 @@ class Bus:
             d.inverted ^= 1 << int(args[0])
         elif what in ("loses", "finds"):
             d.loses = what == "loses"
-        elif what == "marks":
-            d.probe.traits["lost"] = args[0] == "0"
         elif what == "fails":
             d.fails = True
         elif what in ("jam", "unjam"):
