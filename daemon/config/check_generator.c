@@ -8,16 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#define WANTED_LINES	"lines, as lines 20 21 26 weights 3 6 12, or as lines " \
-			"5 6 codes 2 4 8 16; one line for what is on or off"
-#define WANTED_DAC	"dac DEVICE voltageN scale S to V, as dac iio:device0 " \
-			"voltage0 scale 2 to 10"
-#define WANTED_CAN	"can ID byte N, as can 1009 byte 2 bits 16 scale 0.1; " \
-			"or bit N, of the byte"
-#define WANTED_PLC	"or plc, the PLC's own signal of that"
-#define WANTED_REGISTER	"register N, as register 10 scale 0.1, or as " \
-			"register 11 codes 2 4 8 16; bit N for what is on " \
-			"or off; told_ also input N"
+#define WANTED_REGISTER	"register N, as register 10 scale 0.1"
 
 struct check {
 	const struct machine_config *c;
@@ -80,35 +71,52 @@ static const char *misfit(const struct check *q, int field, bool told,
 	return NULL;
 }
 
+static const char *wrong_with(const struct check *q, int field, bool told,
+			      const char *text)
+{
+	struct config_way w;
+	const char *wrong = config_way_read(text, field, &w);
+
+	return wrong ? wrong : misfit(q, field, told, &w);
+}
+
+/* Of some ways to say it those that it would take there. */
+static void offer(const struct check *q, int field, bool told, char *buf,
+		  size_t size)
+{
+	static const char *const ways[] = {
+		"line 20", "lines 20 21 26 weights 3 6 12",
+		"lines 5 6 codes 60 80 120 180",
+		"can 1013 byte 0 bit 3", "can 1013 byte 0 bits 16 scale 0.1",
+		"register 14 bit 0", "register 10 bits 16 scale 0.1",
+		"register 11 codes 60 80 120 180",
+		"input 30 bits 16 scale 0.1", "plc",
+		"dac iio:device0 voltage0 scale 2 to 10",
+	};
+	size_t len = (size_t)snprintf(buf, size, "auto, none");
+
+	for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]); i++)
+		if (len < size && !wrong_with(q, field, told, ways[i]))
+			len += (size_t)snprintf(buf + len, size - len,
+						", as %s", ways[i]);
+}
+
 static int check_way(struct check *q, int field, bool told)
 {
 	const char *text = told ? q->c->generator.told[field] :
 				  q->c->generator.field[field];
-	static const char *const by_interface[] = {
-		[GENERATOR_CAN] = WANTED_CAN,
-		[GENERATOR_MODBUS] = WANTED_REGISTER,
-		[GENERATOR_PLC] = WANTED_PLC,
-	};
-	const int interface = config_generator_interface(q->c);
-	const char *by = interface >= GENERATOR_CAN ? by_interface[interface] :
-						      "";
-	struct config_way w;
+	char key[24], offered[240];
 	const char *wrong;
-	char key[24];
 
 	if (!*text || strcmp(text, "auto") == 0)
 		return 0;
-	key_name(field, told, key, sizeof(key));
-	wrong = config_way_read(text, field, &w);
-	if (!wrong)
-		wrong = misfit(q, field, told, &w);
+	wrong = wrong_with(q, field, told, text);
 	if (!wrong)
 		return 0;
-	interp_diag_say(q->diag, "generator.%s \"%.60s\" %s; none%s%s%s%s",
-			key, text, wrong, told ? "" : ", ",
-			told ? "" : strncmp(text, "dac", 3) == 0 ? WANTED_DAC :
-								   WANTED_LINES,
-			*by ? "; " : "", by);
+	offer(q, field, told, offered, sizeof(offered));
+	interp_diag_say(q->diag, "generator.%s \"%.60s\" %s; %s",
+			key_name(field, told, key, sizeof(key)), text, wrong,
+			offered);
 	return refuse(q, key);
 }
 
@@ -457,10 +465,14 @@ static int check_spark(struct check *q)
 	if (spark.kind != WAY_NONE || !config_generator_beside(interface) ||
 	    !config_backend(q->c)->has_gap(q->c))
 		return 0;
-	interp_diag_say(q->diag, "generator.spark reaches nothing; spark = %s"
-			"line N, or [gpio] spark: a line ends sparks at once",
-			interface == GENERATOR_CAN ? "can ID byte N bit N, "
-			: "");
+	interp_diag_say(q->diag, "generator.spark reaches nothing; spark = %s: "
+			"a line ends sparks at once",
+			config_generator_gpio(q->c, PROCESS_SPARK) ?
+			"auto, which is [gpio] spark" :
+			interface == GENERATOR_CAN ?
+			"can ID byte N bit N, or line N" :
+			q->c->backend == BACKEND_GPIO ?
+			"line N, or [gpio] spark" : "line N");
 	return refuse(q, "spark");
 }
 

@@ -203,7 +203,7 @@ static const struct refusal refusals[] = {
 	  "has fewer weights than lines", "lines 20 21 26 weights 3 6 12" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
 	  "on_us = lines 20 21 codes 2 4 8 16 32\n", 5, 0,
-	  "has more codes than its lines or bits make", "codes 2 4 8 16" },
+	  "has more codes than its lines or bits make", "codes 60 80 120 180" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
 	  "on_us = lines 20 21\n", 5, 0, "has neither weights nor codes", "" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
@@ -230,18 +230,18 @@ static const struct refusal refusals[] = {
 	  "generator.iso is in byte 1 of frame 100", "another byte" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
 	  "peak_a = can 100 byte 7 bits 16\n", 5, 0,
-	  "goes beyond the eighth byte", "can ID byte N" },
+	  "goes beyond the eighth byte", "as can 1013 byte 0" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = can 100 byte 0\n", 6, 0,
-	  "is a frame, and the interface is not can", "register 10 scale" },
+	  "is a frame, and the interface is not can", "as register 10" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
 	  "peak_a = register 10\n", 5, 0,
-	  "is a register, and the interface is not modbus", "can ID byte N" },
+	  "is a register, and the interface is not modbus", "as can 1013 byte 0" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 10 bits 10\n"
 	  "on_us = register 10 bit 9\n", 7, 0,
 	  "generator.on_us and generator.peak_a have bits of register 10",
 	  "a place of its own" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 65536\n", 6, 0,
-	  "has no address of 0 to 65535", "register N" },
+	  "has no address of 0 to 65535", "as register 10" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1 bit 9 bits 8\n", 6,
 	  0, "goes beyond the sixteenth bit", "" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1 scale 2000\n", 6, 0,
@@ -270,12 +270,12 @@ static const struct refusal refusals[] = {
 	  "told_peak_a = input 1 within 0\n", 7, 0,
 	  "within of what is told", "" },
 	{ MODBUS "modbus = /dev/ttyS0\npolarity = register 1 bits 2\n", 6, 0,
-	  "is of a field that is on or off", "bit N" },
+	  "is of a field that is on or off", "as register 14 bit 0" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = input 1\n", 6, 0,
-	  "is an input register, which nobody can write", "told_ also" },
+	  "is an input register, which nobody can write", "as register 10" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
 	  "spark = register 2 bit 0\n", 7, 0,
-	  "take a round trip: it must be a line", "lines 20 21" },
+	  "take a round trip: it must be a line", "as line 20" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
 	  "sense = register 2 bit 0\n", 7, 0, "take a round trip", "" },
 	{ MODBUS "peak_a = register 1\n", 0, 0,
@@ -293,16 +293,16 @@ static const struct refusal refusals[] = {
 	  "generator.told_arcs and generator.told_opens have bits of register "
 	  "41", "a place of its own" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1 bits 32\n", 6, 0,
-	  "has a word that is none of", "register 10 scale 0.1" },
+	  "has a word that is none of", "as register 10" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
 	  "told_opens = input 65535 bits 32\n", 7, 0,
-	  "goes beyond the last register", "register 10 scale 0.1" },
+	  "goes beyond the last register", "as register 10" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
 	  "told_opens = input 40 first low\n", 7, 0,
-	  "has an order, and one register", "register 10 scale 0.1" },
+	  "has an order, and one register", "as register 10" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
 	  "told_fault = input 40 codes 1 2\n", 7, 0,
-	  "has codes and is a sum or a number", "register 10 scale 0.1" },
+	  "has codes and is a sum or a number", "as register 10" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
 	  "fault_words = 1 no water, too warm\n", 7, 0,
 	  "generator.fault_words \"1 no water, too warm\" has words without a "
@@ -322,7 +322,7 @@ static const struct refusal refusals[] = {
 	{ BY_PLC "[plc]\nnode = 96\n", 6, 0, "interface is plc and plc.node 96",
 	  "a node of 1 to 95" },
 	{ BY_PLC "sense = plc\n", 7, 0, "those take a round trip: it must be "
-	  "a line", "lines 5 6" },
+	  "a line", "as line 20" },
 	/* Counts for the gap servo. */
 	{ "[gap]\nsource = counts\n", 2, 0, "nothing feels the gap without "
 	  "sparks", "backend sim source = shares" },
@@ -355,38 +355,38 @@ static const struct refusal refusals[] = {
 	  "share_stale_ms = 3\n", 29, 0,
 	  "gap.share_stale_ms 3 is less than four periods", "at least 4" },
 	/* Converters. */
-	{ DAC "peak_a = dac\n", 5, 0, "has no device", "dac DEVICE voltageN" },
+	{ DAC "peak_a = dac\n", 5, 0, "has no device", "as dac iio:device0" },
 	{ DAC "peak_a = dac iio:device0 voltage to 10\n", 5, 0,
-	  "has no channel voltageN or currentN", "dac DEVICE" },
+	  "has no channel voltageN or currentN", "as dac iio:device0" },
 	{ DAC "peak_a = dac iio:device0 voltage0 scale 2\n", 5, 0,
-	  "no highest output: to N", "to V" },
+	  "no highest output: to N", "to 10" },
 	{ DAC "peak_a = dac iio:device0 voltage0 zero 4 to 4\n", 5, 0,
-	  "no highest output", "dac DEVICE" },
+	  "no highest output", "as dac iio:device0" },
 	{ DAC "peak_a = dac iio:device0 voltage0 scale 0 to 10\n", 5, 0,
-	  "has no scale above 0", "dac DEVICE" },
+	  "has no scale above 0", "as dac iio:device0" },
 	{ DAC "peak_a = dac iio:device0 voltage0 to 10 scale\n", 5, 0,
-	  "none of scale, zero, to", "dac DEVICE" },
+	  "none of scale, zero, to", "as dac iio:device0" },
 	{ DAC "ignition_v = dac iio:device0 voltage0 scale 0.1 to 10\n", 5, 0,
-	  "cannot hold a value of the field", "dac DEVICE" },
+	  "cannot hold a value of the field", "as dac iio:device0" },
 	{ DAC "polarity = dac iio:device0 voltage0 to 10\n", 5, 0,
-	  "is of a field that is on or off", "dac DEVICE" },
+	  "is of a field that is on or off", "auto, none, as line 20" },
 	{ DAC "told_peak_a = dac iio:device0 voltage0 to 10\n", 5, 0,
 	  "is told by a converter's output", "none" },
 	/* It would spark as it likes. */
 	{ ADC_MACHINE "[gap]\nsource = voltage\n"
 	  "[generator]\ninterface = can\n"
 	  "peak_a = can 1010 byte 0 scale 0.1\n", 0, 0,
-	  "generator.spark reaches nothing", "can ID byte N bit N, line N" },
+	  "generator.spark reaches nothing", "can ID byte N bit N, or line N" },
 	{ DAC "peak_a = dac ad5624r voltage0 to 10\n"
 	  "ignition_v = dac ad5624r voltage0 scale 30 to 10\n", 6, 0,
 	  "generator.ignition_v and generator.peak_a are both ad5624r voltage0",
 	  "a channel of its own" },
 	{ BY_PLC "told_sparks = plc\n", 7, 0, "is a sum, and the PLC has no "
-	  "signal for it", "or plc, the PLC's own signal" },
+	  "signal for it", "auto, none" },
 	{ BY_PLC "on_us = plc scale 0.1\n", 7, 0, "has a word after plc",
-	  "or plc, the PLC's own signal" },
+	  "as plc" },
 	{ BY_PLC "on_us = register 4\n", 7, 0, "the interface is not modbus",
-	  "or plc, the PLC's own signal" },
+	  "as plc" },
 	{ BY_PLC "peak_a = none\non_us = none\noff_us = none\n"
 	  "ignition_v = none\npolarity = none\niso = none\npump = none\n", 6,
 	  0, "interface is plc and it reaches no field", "peak_a = plc" },
@@ -411,7 +411,7 @@ static const struct refusal refusals[] = {
 	  "where the generator tells it" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
 	  "on_us = lines 5 6 codes 0 0 0 0\n", 5, 0,
-	  "makes no value but 0, which is none", "codes 2 4 8 16" },
+	  "makes no value but 0, which is none", "codes 60 80 120 180" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = lines\n"
 	  "peak_a = lines 5 6 weights 1 0x2\n", 5, 0,
 	  "has a weight that is not above 0", "weights 3 6 12" },
@@ -426,7 +426,7 @@ static const struct refusal refusals[] = {
 	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
 	  "can_id = 100\nservo_v = can 100 byte 7\n", 6, 0,
 	  "\"can 100 byte 7\" goes beyond the eighth byte",
-	  "can ID byte N" },
+	  "as can 1013 byte 0" },
 	{ "[machine]\nbackend = null\n[generator]\ninterface = can\n"
 	  "can_id = 100\nservo_v = can 100 byte 5\n", 6, 0,
 	  "have bits of frame 100 in common", "a place of its own" },
@@ -471,6 +471,48 @@ static void a_refusal_says_where_what_and_what_is_accepted(void **state)
 		    !strstr(d.found, r->found) || !strstr(d.wanted, r->wanted))
 			fail_msg("%s\ngave %u:%u: %s; %s", r->text, d.line,
 				 d.column, d.found, d.wanted);
+	}
+}
+
+/* It may be refused for what it stands beside, but not for itself. */
+static int takes_what_is_offered(const char *base, const char *key)
+{
+	char text[400], offered[240], *from = offered, *at;
+	struct machine_config c;
+	struct interp_diag d;
+	int n = 0;
+
+	snprintf(text, sizeof(text), "%s%s = rubbish\n", base, key);
+	assert_int_equal(read_text(text, &c, &d), -EINVAL);
+	snprintf(offered, sizeof(offered), "%s", d.wanted);
+	while ((at = strstr(from, ", as "))) {
+		const size_t len = strcspn(at + 5, ",;");
+
+		snprintf(text, sizeof(text), "%s%s = %.*s\n", base, key,
+			 (int)len, at + 5);
+		from = at + 5;
+		n++;
+		if (read_text(text, &c, &d) && strchr(d.found, '"'))
+			fail_msg("%s\ngave %s; %s", text, d.found, d.wanted);
+	}
+	return n;
+}
+
+static void each_way_that_is_offered_is_taken(void **state)
+{
+	static const char *const base[] = {
+		DAC, MODBUS "modbus = /dev/ttyS0\n", BY_PLC,
+		"[machine]\nbackend = null\n[generator]\ninterface = can\n",
+	};
+
+	(void)state;
+	for (size_t k = 0; k < COUNT(base); k++) {
+		for (int i = 0; i < PROCESS_NFIELDS; i++)
+			assert_true(takes_what_is_offered(base[k],
+							  process_name(i)));
+		takes_what_is_offered(base[k], "told_peak_a");
+		takes_what_is_offered(base[k], "told_iso");
+		takes_what_is_offered(base[k], "told_arcs");
 	}
 }
 
@@ -646,6 +688,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_refusal_says_where_what_and_what_is_accepted),
+		cmocka_unit_test(each_way_that_is_offered_is_taken),
 		cmocka_unit_test(every_number_is_refused_outside_its_range),
 		cmocka_unit_test(every_misspelt_key_is_met_with_the_right_one),
 		cmocka_unit_test(a_nul_byte_or_an_endless_line_is_refused),
