@@ -27,7 +27,7 @@ table = paper.tech
 """
 
 # A generator on the same bus instead, as the shipped example lays it out.  What waits
-# for confirm_s is the steps with the bit that is stuck, two of them: so long that no busy
+# for confirm_s is the one step with the bit that is stuck: so long that no busy
 # host holds an answer up for it.
 EXAMPLE = (ROOT / "examples/machine-can402.ini").read_text()
 CAN = GAP.replace("pump = 7\n", "") + re.search(
