@@ -84,6 +84,9 @@ static const struct refusal words[] = {
 	{ "G1 X1",		1, 1,	"no feed given", "F word" },
 	{ "G0 X1\nY200.1",	2, 1,	"beyond the travel", "-200 to 200" },
 	{ "G0 X1 Y-201 Z9",	1, 7,	"beyond the travel", "-200 to 200" },
+	{ "G10 L2 P1 Y100\nG0 X1 Y150", 2, 7,
+	  "Y 150.0000, which is 250.0000 in machine coordinates, is beyond",
+	  "Y from -300 to 100 as the work counts, -200 to 200 in machine" },
 };
 
 static const struct refusal arcs[] = {
@@ -99,6 +102,8 @@ static const struct refusal arcs[] = {
 	{ "G90.1 G2 F1 X9 I5",	1, 7,	"half a centre", "both words" },
 	{ "G2 X10 R5",		1, 1,	"no feed given", "F word" },
 	{ "G0 Y195\nG2 F1 X20 R10", 2, 7, "beyond the travel", "200" },
+	{ "G10 L2 P1 Y100\nG0 Y95\nG2 F1 X20 R10", 3, 7, "Y 105.0000, which",
+	  "100 as the work counts" },
 };
 
 static const struct refusal flow[] = {

@@ -244,19 +244,43 @@ const double *interp_build_here(const struct interp_build *b)
 
 /* -- Checks ------------------------------------------------------------- */
 
-int build_refuse_travel(const struct interp_machine *m, int axis,
-			double at_mm, struct interp_diag *diag)
+/* Where what comes counts from along @axis alone; NULL: places of the machine,
+ * or the axes of the work are not those of the machine. */
+static const struct interp_origin *counts_from(const struct interp_build *b,
+					       int axis)
 {
-	const struct interp_axis_limits *l = &m->axis[axis];
-	const char letter = INTERP_AXIS_LETTERS[axis];
+	const struct interp_origin *o = b->known.at;
 
-	if (!(m->present & 1u << axis)) {
+	if (!b->counts || b->counts > b->known.n)
+		return NULL;
+	o += b->counts - 1;
+	return o->mm[axis] != 0 && o->turn_deg == 0 && !o->mirrored ? o : NULL;
+}
+
+int build_refuse_travel(const struct interp_build *b, int axis, double at_mm,
+			struct interp_diag *diag)
+{
+	const struct interp_axis_limits *l = &b->o.machine->axis[axis];
+	const struct interp_origin *o = counts_from(b, axis);
+	const char letter = INTERP_AXIS_LETTERS[axis];
+	const double from_mm = o ? o->mm[axis] : 0;
+
+	if (!(b->o.machine->present & 1u << axis)) {
 		return interp_diag_say(diag, "the machine has no axis %c; a "
 				       "program for the axes it has", letter);
 	}
-	return interp_diag_say(diag, "%c %.4f is beyond the travel; %c from "
-			       "%g to %g in machine coordinates", letter, at_mm,
-			       letter, l->travel_min_mm, l->travel_max_mm);
+	if (!o)
+		return interp_diag_say(diag, "%c %.4f is beyond the travel; %c "
+				       "from %g to %g in machine coordinates",
+				       letter, at_mm, letter, l->travel_min_mm,
+				       l->travel_max_mm);
+	return interp_diag_say(diag, "%c %.4f, which is %.4f in machine "
+			       "coordinates, is beyond the travel; %c from %g "
+			       "to %g as the work counts, %g to %g in machine "
+			       "coordinates", letter, at_mm - from_mm, at_mm,
+			       letter, l->travel_min_mm - from_mm,
+			       l->travel_max_mm - from_mm, l->travel_min_mm,
+			       l->travel_max_mm);
 }
 
 static inline bool is_inside(const struct interp_build *b, int axis,
@@ -376,7 +400,7 @@ uint32_t interp_build_origin(struct interp_build *b,
 	is.seg = 0;
 	for (size_t i = n; i-- > 0 && i + ORIGINS_BACK >= n;)
 		if (memcmp(&known[i], &is, sizeof(is)) == 0)
-			return (uint32_t)i + 1;
+			return b->counts = (uint32_t)i + 1;
 	if (n >= INTERP_ORIGINS_MAX)
 		return INTERP_ORIGINS_MAX;
 	if (n == INTERP_ORIGINS_MAX - 1)
@@ -385,7 +409,7 @@ uint32_t interp_build_origin(struct interp_build *b,
 	if (!known)
 		return 0;
 	*known = is;
-	return (uint32_t)b->known.n;
+	return b->counts = (uint32_t)b->known.n;
 }
 
 /* Make room for a segment, and append its last node. */
@@ -526,7 +550,7 @@ static inline int measure(const struct interp_build *b,
 		int64_t len;
 
 		if (!is_inside(b, i, at) && !build_axis_ok(b, i, at)) {
-			build_refuse_travel(b->o.machine, i, at, diag);
+			build_refuse_travel(b, i, at, diag);
 			return -EINVAL;
 		}
 		to[i] = sub_of(b, i, at);

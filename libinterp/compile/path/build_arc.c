@@ -136,7 +136,7 @@ static int arc_travel(struct build_arc *p, struct interp_diag *diag)
 		p->near_edge = true;
 		if (at > l->travel_max_mm + l->pulse_mm ||
 		    at < l->travel_min_mm - l->pulse_mm)
-			return build_refuse_travel(p->o->machine, (int)axis, at,
+			return build_refuse_travel(p->walks, (int)axis, at,
 						   diag);
 	}
 	return 0;

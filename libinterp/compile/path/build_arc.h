@@ -72,8 +72,9 @@ void build_arc_runs(const struct build_arc *p, struct interp_arc *arc,
 int build_arc_add(struct interp_build *b, const struct build_arc *p,
 		  const struct interp_build_word *w, struct interp_diag *diag);
 
-/** build_refuse_travel() - say that an axis leaves its travel; -EINVAL. */
-int build_refuse_travel(const struct interp_machine *m, int axis,
-			double at_mm, struct interp_diag *diag);
+/** build_refuse_travel() - say that an axis leaves its travel, as the program
+ *  counts; -EINVAL. */
+int build_refuse_travel(const struct interp_build *b, int axis, double at_mm,
+			struct interp_diag *diag);
 
 #endif /* PATH_BUILD_ARC_H */

@@ -84,8 +84,7 @@ static int try_axis(struct curve_plan *p, uint32_t k, int32_t pulses,
 
 	if (!build_axis_ok(p->b, axis, at_mm)) {
 		build_curve_blame(p, p->from);
-		return build_refuse_travel(p->b->o.machine, axis, at_mm,
-					   p->diag);
+		return build_refuse_travel(p->b, axis, at_mm, p->diag);
 	}
 	return pulses - was > 1 || pulses - was < -1;
 }

@@ -91,8 +91,7 @@ static int check_place(struct curve_plan *p, double u)
 		if (build_axis_ok(p->b, axis, at.d[0][k]))
 			continue;
 		build_curve_blame(p, u);
-		return build_refuse_travel(p->b->o.machine, axis, at.d[0][k],
-					   p->diag);
+		return build_refuse_travel(p->b, axis, at.d[0][k], p->diag);
 	}
 	return 0;
 }
@@ -130,8 +129,8 @@ static int check_axes(struct curve_plan *p)
 
 	if ((p->moved & ~m->present) == 0)
 		return 0;
-	return build_refuse_travel(m, __builtin_ctz(p->moved & ~m->present), 0,
-				   p->diag);
+	return build_refuse_travel(p->b, __builtin_ctz(p->moved & ~m->present),
+				   0, p->diag);
 }
 
 int build_curve_check_way(struct curve_plan *p)

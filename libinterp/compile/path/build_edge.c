@@ -39,7 +39,7 @@ static bool try_axis(const struct look *l, int axis, int64_t at, double *room)
 
 	build_travel(l->b, axis, ends);
 	if ((double)at < ends[0] || (double)at > ends[1]) {
-		build_refuse_travel(m, axis,
+		build_refuse_travel(l->b, axis,
 				    (double)at * m->axis[axis].pulse_mm,
 				    l->diag);
 		return false;

@@ -63,8 +63,7 @@ int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	for (int i = 0; i < INTERP_NAXES; i++) {
 		if (end_mm[i] != here[i] &&
 		    !build_axis_ok(b, i, end_mm[i]))
-			return build_refuse_travel(b->o.machine, i, end_mm[i],
-						   diag);
+			return build_refuse_travel(b, i, end_mm[i], diag);
 	}
 	if (f->n == INTERP_FIT_POINTS_MAX ||
 	    (f->n > 0 && !same_word(&f->word, w)))

@@ -87,6 +87,7 @@ struct interp_build {
 	struct table origins, known;	/* of segments; and all that have a
 					 * number, which is their index + 1 */
 	uint32_t origin;		/* of the last segment */
+	uint32_t counts;		/* the number that was given last */
 	struct build_fit fit;
 	char cond_letter;
 	uint32_t cond_number;

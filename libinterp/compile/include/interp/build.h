@@ -216,7 +216,8 @@ int interp_build_curve(struct interp_build *b,
 
 /**
  * interp_build_origin() - the number of @o (its seg does not count) for the
- * words of motions; equal ones have one number.  Return: 0: it is not told.
+ * words of motions; equal ones have one number.  What comes next is refused in
+ * the coordinates of the last one.  Return: 0: it is not told.
  */
 uint32_t interp_build_origin(struct interp_build *b,
 			     const struct interp_origin *o);
