@@ -304,6 +304,9 @@ static int report(const struct ctl *c, const char *body, json_t *job)
 	ctl_duration(took, sizeof(took), took_s);
 	if (c->json)
 		printf("%s\n", body);
+	else if (strcmp(c->verb, "offset") == 0)
+		printf("job %s: %s%s%s\n", name, state, *reason ? ": " : "",
+		       reason);
 	else
 		printf("job %s: %s%s%s\n"
 		       "path       %.3f mm of %.3f mm\ndepth      %.3f mm\n"

@@ -56,13 +56,18 @@ static int axis_of(char letter)
 
 /* -- One word -------------------------------------------------------------- */
 
-/* Return: false if it is no number between these. */
-static bool read_mm(const char *text, double low, double high, double *ret)
+/* Return: 0; -EINVAL: it is no number; -ERANGE: it is not between these. */
+static int read_mm(struct touch *t, const char *text, double low, double high,
+		   double *ret)
 {
 	char *end;
 
 	*ret = strtod(text, &end);
-	return end != text && !*end && *ret >= low && *ret <= high;
+	if (end == text || *end || isnan(*ret))
+		return -EINVAL;
+	t->low = low;
+	t->high = high;
+	return *ret >= low && *ret <= high ? 0 : -ERANGE;
 }
 
 static int take_target(struct touch *t, const char *word)
@@ -78,7 +83,7 @@ static int take_target(struct touch *t, const char *word)
 		return 0;
 	if (toupper((unsigned char)*word) != 'T' ||
 	    !isdigit((unsigned char)word[1]) ||
-	    !read_mm(word + 1, 1, STORE_ELECTRODE_NUMBER_MAX, &n) ||
+	    read_mm(t, word + 1, 1, STORE_ELECTRODE_NUMBER_MAX, &n) ||
 	    !store_electrode_ok(n))
 		return -EINVAL;
 	t->electrode = (uint32_t)n;
@@ -108,8 +113,8 @@ static int take_edge(struct touch *t, int axis, const char *way)
 	t->form = TOUCH_EDGE;
 	t->felt = 1u << axis;
 	t->way[axis] = *way == '+' ? 1 : -1;
-	return !*way || !way[1] || read_mm(way + 1, 1e-3, 1e6, &t->most_mm) ?
-	       0 : -EINVAL;
+	return !*way || !way[1] ? 0 :
+	       read_mm(t, way + 1, 1e-3, 1e6, &t->most_mm);
 }
 
 /* X=5, X@5, X=probe+. */
@@ -117,16 +122,18 @@ static int take_axis(struct touch *t, uint32_t present, const char *word)
 {
 	const int axis = axis_of(*word);
 	uint32_t *of = word[1] == '@' ? &t->at : &t->here;
+	int err;
 
 	if (axis < 0 || !(present >> axis & 1))
 		return -EINVAL;
 	if (word[1] == '=' && strncasecmp(word + 2, "probe", 5) == 0)
 		return take_edge(t, axis, word + 7);
-	if ((t->here | t->at) >> axis & 1 ||
-	    !read_mm(word + 2, -1e6, 1e6, &t->mm[axis]))
+	if ((t->here | t->at) >> axis & 1)
 		return -EINVAL;
-	*of |= 1u << axis;
-	return 0;
+	err = read_mm(t, word + 2, -1e6, 1e6, &t->mm[axis]);
+	if (err == 0)
+		*of |= 1u << axis;
+	return err;
 }
 
 /* A corner is in X Y; how a face tilts is felt along Z too. */
@@ -158,15 +165,17 @@ static int take_cycle(struct touch *t, const char *word)
 	const size_t n = strlen(t->words);
 	const int axis = axis_of(letter);
 	double mm;
+	int err = 0;
 
 	if (t->form <= TOUCH_EDGE || strchr(t->words, letter))
 		return -EINVAL;
 	if (forms[t->form].walls && axis >= 0 && axis <= last_wall(t) &&
 	    (strcmp(word + 1, "+") == 0 || strcmp(word + 1, "-") == 0))
 		t->way[axis] = word[1] == '+' ? 1 : -1;
-	else if (!strchr(forms[t->form].letters, letter) ||
-		 !read_mm(word + 1, -1e6, 1e6, &mm))
+	else if (!strchr(forms[t->form].letters, letter))
 		return -EINVAL;
+	else if ((err = read_mm(t, word + 1, -1e6, 1e6, &mm)) != 0)
+		return err;
 	else if (t->form == TOUCH_SKEW)
 		return take_skew(t, letter, mm);
 	return (size_t)snprintf(t->words + n, sizeof(t->words) - n, " %c%s",
@@ -185,8 +194,7 @@ static int take_word(struct touch *t, uint32_t present, const char *word)
 	else if (strcasecmp(word, "new") == 0)
 		t->is_new = true;
 	else if (strncasecmp(word, "radius=", 7) == 0)
-		return read_mm(word + 7, 1e-4, 1e4, &t->radius_mm) ? 0 :
-		       -EINVAL;
+		return read_mm(t, word + 7, 1e-4, 1e4, &t->radius_mm);
 	else if (word[1] == '=' || word[1] == '@')
 		return take_axis(t, present, word);
 	else
@@ -300,8 +308,12 @@ int touch_read(struct touch *ret, uint32_t present, const char *text,
 			return refuse(why, at);
 		if (!first && n)
 			err = take_word(ret, present, word);
+		if (err == -ERANGE)
+			snprintf(why, TOUCH_WHY_MAX, "'%s'; a number of mm "
+				 "from %.10g to %.10g", word, ret->low,
+				 ret->high);
 		if (err < 0)
-			return refuse(why, at);
+			return err == -ERANGE ? -EINVAL : refuse(why, at);
 		at += n + (at[n] != '\0');
 	}
 	return judge(ret, text, why);

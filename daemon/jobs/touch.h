@@ -50,6 +50,8 @@ struct touch {
 	double along_mm;		/* ... so far */
 	double off_mm;			/* a skew: so far off the face; 0: not
 					 * said */
+	double low, high;		/* a number that is refused lies beside
+					 * these */
 	char words[120];		/* of its cycle: " R10 Q0.1" */
 };
 

@@ -103,6 +103,8 @@ def test_the_next_job_cuts_at_what_was_felt(plate, form):
         assert o[axis] == pytest.approx(mm, abs=PULSE)
         line = f"{axis} was 0.0000, is {o[axis]:.4f}"
         assert line in out and line in job["reason"], (out, job["reason"])
+    # A feeler's line is written as long as the travel: its length says nothing.
+    assert "path" not in out, out
     go(m, "G53 G0 Z10")
     at = first_cut(m, "G55")
     for axis, mm in zero.items():
@@ -337,6 +339,9 @@ def test_two_forms_at_once_touch_one_off(plate):
     (("G54", "skew"), "skew Y+ I40"), (("G54", "skew", "Y+"), "I40"),
     (("G54", "skew", "Y+", "J5"), "I40"), (("G54", "skew", "Y+", "I0"), "'I0'"),
     (("G54", "skew", "Y+", "X-", "I5"), "one of X Y Z"), (("G54", "skew", "Y+", "I5", "Y=1"), "turn"),
+    (("G54", "X=2e6"), "'X=2e6'; a number of mm from -1000000 to 1000000"),
+    (("G54", "bore", "R2e6"), "'R2e6'; a number of mm from"), (("G54", "Z=probe-0"), "from 0.001 to 1"),
+    (("G54", "X=probe-", "radius=1e5"), "'radius=1e5'; a number of mm from 0.0001 to 10000"),
     (("T3", "skew", "Z-", "I5"), "tilts"), (("T0", "Z=1"), "'T0'"), (("T84", "Z=1"), "'T84'"),
 ])
 def test_what_fits_no_form_is_refused(plate, words, says):
