@@ -7,6 +7,7 @@
 #include "stands.h"
 #include "waits.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,14 +90,36 @@ static void ask_electrode(struct jobs *j, const struct asks_what *w, char *to,
 			 e.name, is, w->of);
 }
 
+/* What somebody has to set; without a number it is the generator's own. */
+static void settings_text(const struct shm_snapshot *s, uint32_t fields,
+			  char *to, size_t size)
+{
+	size_t n = 0;
+
+	*to = '\0';
+	for (int i = 0; i < SHM_NGENERATOR && n < size; i++) {
+		const char *unit = process_unit(i);
+		char value[32] = "";
+
+		if (!(fields >> i & 1))
+			continue;
+		if (!isnan(s->asked[i]))
+			snprintf(value, sizeof(value), " %.10g%s%s",
+				 s->asked[i], *unit ? " " : "", unit);
+		n += (size_t)snprintf(to + n, size - n, "%s%s%s", n ? ", " : "",
+				      process_name(i), value);
+	}
+}
+
 static void ask_setting(const struct jobs *j, const struct asks_what *w,
 			char *to, size_t size)
 {
 	const struct shm_snapshot *s = snap_of(j);
-	char names[120], of[16] = "";
+	char values[200], of[16] = "";
 
+	settings_text(s, w->of, values, sizeof(values));
 	if (s->cond_letter)
-		snprintf(of, sizeof(of), " of %c%u", s->cond_letter,
+		snprintf(of, sizeof(of), " for %c%u", s->cond_letter,
 			 s->cond_number);
 	if (w->confirmed)
 		snprintf(to, size, "the generator is set; edmctl start goes "
@@ -104,7 +127,7 @@ static void ask_setting(const struct jobs *j, const struct asks_what *w,
 	else
 		snprintf(to, size, "set %s%s at the generator; edmctl done, "
 			 "then edmctl start",
-			 process_names(w->of, names, sizeof(names)), of);
+			 values, of);
 }
 
 static void say(struct jobs *j, const struct asks_what *w, char *to,

@@ -133,9 +133,6 @@ bool process_is_setting(int field);
 void process_range_text(const struct process_delivers *d, int field, char *buf,
 			size_t size);
 
-/** process_names() - of a set of fields, a bit each, into @buf; returns it. */
-const char *process_names(uint64_t fields, char *buf, size_t size);
-
 /** process_setting() - where @gap or @jump has field @id; NULL: nowhere, the
  *  generator is asked for it, or nothing goes by it.  RT-safe. */
 double *process_setting(enum interp_tech_id id, struct cycle_gap_config *gap,

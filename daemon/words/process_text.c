@@ -9,18 +9,6 @@
 #include <math.h>
 #include <stdio.h>
 
-const char *process_names(uint64_t fields, char *buf, size_t size)
-{
-	size_t n = 0;
-
-	buf[0] = '\0';
-	for (int i = 0; i < PROCESS_NFIELDS && n < size; i++)
-		if (fields >> i & 1)
-			n += (size_t)snprintf(buf + n, size - n, "%s%s",
-					      n ? " " : "", process_name(i));
-	return buf;
-}
-
 const char *process_told_text(const double told[PROCESS_NTOLD], char *buf,
 			      size_t size)
 {
