@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What edmd and edmd-jobs answer in whole sentences, as their sources have it, is
-shown in Chinese by the page's own function.  Sentences that are put together with
-values are not looked at."""
+"""What edmd and edmd-jobs answer in whole sentences, and what a stand asks for, as
+their sources have it, is shown in Chinese by the page's own function.  Other
+sentences that are put together with values are not looked at."""
 
 import json
 import os
@@ -42,7 +42,52 @@ def sentences():
             if not MACRO.search(STRING.sub("", said)):
                 found |= {"".join(STRING.findall(j.group()))
                           for j in JOINED.finditer(said)}
-    return sorted(found)
+    return sorted(found | asked())
+
+
+# How asks.c puts a stand into words, and what comes of it.
+THEN = "edmctl done{}, then edmctl start"
+PUT = {
+    "the program stops in line %u%s%s; %s": (
+        "the program stops in line 3; edmctl start goes on",
+        "the program stops in line 3: M0 (turn the part); edmctl start goes on"),
+    "electrode %u is in; edmctl start goes on": (
+        "electrode 3 is in; edmctl start goes on",),
+    "take the electrode out%s; edmctl done 0, then edmctl start": (
+        f"take the electrode out; {THEN.format(' 0')}",
+        f"take the electrode out (1 is in); {THEN.format(' 0')}"),
+    "put electrode %u%s%s in%s; edmctl done %u, then edmctl start": (
+        f"put electrode 3 in; {THEN.format(' 3')}",
+        f"put electrode 3 rib 2 in (1 is in); {THEN.format(' 3')}"),
+    "the generator is set; edmctl start goes on": (
+        "the generator is set; edmctl start goes on",),
+    "set %s%s at the generator; edmctl done, then edmctl start": (
+        f"set on_us 20 us, off_us 50 us at the generator; {THEN.format('')}",
+        f"set on_us 20 us for C200 at the generator; {THEN.format('')}"),
+    "%s: M%u; %s": (
+        "the PLC carries out an M code: M6; it goes on by itself",),
+    "%s%s%s; %s": (
+        "it was held by command of host; edmctl start goes on, edmctl stop ends "
+        "the job",),
+}
+
+
+def asked():
+    """What a stand asks for, also as the reason of a refusal."""
+    said = {"".join(STRING.findall(m.group())) for m in
+            JOINED.finditer((ROOT / "daemon/jobs/asks.c").read_text())}
+    assert set(PUT) <= said
+    assert {s for s in said if "; " in s} - set(PUT) == {"%s; %s"}
+    rows = (ROOT / "daemon/words/stands.h").read_text().replace("\\\n", "")
+    whole = {f"{what}; {asks}" for what, asks in re.findall(
+        r'STAND_BY_\w+,\s*"([^"]+)",\s*"([^"]+)"', rows)
+        if "electrode" not in what and "by hand" not in what
+        and "program stops" not in what and "optional stop" not in what
+        and "M code" not in what}
+    assert len(whole) > 7
+    whole |= {one for put in PUT.values() for one in put}
+    return {f"{why}{one}" for one in whole for why in
+            ("", "not before this: ", "that is not what the machine asks for: ")}
 
 
 @pytest.mark.skipif(not (WEB / "node_modules").is_dir(),

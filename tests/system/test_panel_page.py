@@ -441,7 +441,7 @@ def test_technology_is_saved_on_the_host_and_comes_back(p, page):
 def test_what_is_begun_is_there_when_its_page_is_opened_again(p, page):
     show(page, "setup")
     page.locator("#mdi").fill("G0 X5")
-    page.locator(".probing").get_by_role("radio", name="Hole").click()
+    page.locator("#probe-form").select_option("hole")
     way = page.locator(".probing input").first
     way.fill("7.5")
     show(page, "tech")
@@ -461,7 +461,7 @@ def test_what_is_begun_is_there_when_its_page_is_opened_again(p, page):
 def test_the_lie_of_the_work_is_a_form(p, page):
     end_job(page, p)
     show(page, "setup")
-    page.get_by_role("radio", name="Lie of the work").click()
+    page.locator("#probe-form").select_option(label="Lie of the work")
     form = page.locator(".probe")
     expect(form.locator(".felt")).to_contain_text("Turn")
     expect(form.locator(".felt")).to_contain_text("0.0000\u00b0")
@@ -472,7 +472,7 @@ def test_the_lie_of_the_work_is_a_form(p, page):
     for choice in page.locator(".probing .choice").all():
         assert choice.evaluate("e => e.scrollWidth <= e.clientWidth")
     expect(form.locator(".felt")).to_contain_text("Rises along X")
-    page.get_by_role("radio", name="Middle of the electrode").click()
+    page.locator("#probe-form").select_option(label="Middle of the electrode")
     expect(form.locator(".drawing")).to_be_visible()
     # Without an electrode of the table there is nothing to give it to.
     expect(page.locator("#probe-run")).to_have_attribute("aria-disabled",
@@ -696,6 +696,8 @@ def test_a_power_cut_is_told(p, page):
     page.locator("#start").click(force=True)
     expect(page.locator(".toast.bad")).to_contain_text("cut off")
     expect(page.locator(".positions")).to_contain_text("not certain")
+    # Where to end it is said by the key that leads there.
+    expect(page.locator("#retract")).to_contain_text("end")
     show(page, "alarms")
     expect(page.locator(".warnings")).to_contain_text("X Y Z")
     show(page, "jobs")
@@ -744,7 +746,7 @@ def test_the_page_says_what_it_stands_for_and_takes_the_answer(p, page):
     press(page.locator("#start"))
     why = page.locator(".head .state p")
     expect(why).to_have_text("Put electrode 3 (e3) in; 1 (e1) is in. Then "
-                             "confirm it.")
+                             "confirm it on Cut.")
     expect(page.locator("#start")).to_have_attribute("aria-disabled", "true")
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
@@ -800,6 +802,42 @@ def test_a_press_is_for_the_job_it_was_begun_for(p, page):
     assert page.evaluate("window.over()") == 1
     page.mouse.up()
     client.job_where("second", "done", 20)
+
+
+def test_a_press_is_for_the_stand_it_was_begun_for(p, page):
+    """Somebody else goes on, and it stands again, while a finger is on the key."""
+    client = p.machine.client
+    end_job(page, p)
+    assert client.submit(b"G21 G90 F600\nG0 Z1\nM0 (one)\nG0 Z2\nM0 (two)\nM30\n",
+                         "stops").code == 0
+    key, why = page.locator("#start"), page.locator(".head .state p")
+    expect(why).to_contain_text("one")
+    page.evaluate(SECOND)
+    key.hover()
+    page.mouse.down()
+    expect(key).to_have_class(re.compile("pressed"))
+    assert client.ask("start").code == 0
+    expect(why).to_contain_text("two")
+    assert page.evaluate("window.over()") == 0
+    page.mouse.up()
+    assert client.status().line == 5
+    end_job(page, p)
+
+
+def test_a_form_shows_what_it_will_do_beside_its_key(p, page):
+    """On a small panel nothing that says where the axis goes is out of sight."""
+    end_job(page, p)
+    page.set_viewport_size({"width": 800, "height": 480})
+    show(page, "setup")
+    key = page.locator("#probe-run")
+    for form in ("edge", "hole", "corner"):
+        page.locator("#probe-form").select_option(form)
+        # What it is called when it is felt may be below.
+        for field in page.locator(".probe .field").filter(
+                has_not_text=re.compile("It is|Radius of")).all():
+            expect(field).to_be_in_viewport(ratio=1)
+            box, under = field.bounding_box(), key.bounding_box()
+            assert box["y"] + box["height"] <= under["y"] + 1, (form, box, under)
 
 
 # Is a line of text shown whole, with nothing of it cut off?

@@ -119,6 +119,11 @@ def test_an_electrode_is_changed_and_nobody_guesses(p, page):  # noqa: F811
 def test_a_generator_is_set_by_hand(p, page):       # noqa: F811
     at(p, "sets", "setting")
     begin(page, p)
+    expect(page.locator(".head .state p")).to_have_text(
+        "At the generator, set C200: length of a pulse 20 \u00b5s, pause after a "
+        "pulse 50 \u00b5s. Then confirm it on Cut.")
+    asks = p.machine.ctl("status").stdout
+    assert "set on_us 20 us, off_us 50 us for C200 at the generator" in asks, asks
     press(page.locator("#done"))
     press(page.locator("#start"))
     p.machine.client.status_where(lambda s: s.stand == "", 20)
@@ -203,12 +208,12 @@ def test_a_cut_is_steered(p, page):                 # noqa: F811
 def test_the_reason_to_stand_needs_no_tap(p, page):         # noqa: F811
     """Each stand of the walk, on a phone, from whichever page is open."""
     said = {
-        "ready": "Press Start for 1 s", "stop": "stops in line 3: turn the part",
+        "ready": "press Start for 1 s", "stop": "stops in line 3: turn the part",
         "optional-stop": "line 5", "electrode": "Put electrode 3 (rib",
         "electrode-done": "Go on", "override": "set to 0 %",
         "held": "Held by command", "fault": "Release the button",
         "reset": "fault was reset", "restart": "started anew",
-        "interrupted": "cut off",
+        "interrupted": "cut off", "lost-place": "is not certain. On Set up",
     }
     page.set_viewport_size({"width": 390, "height": 844})
     begin(page, p, "machine")

@@ -140,7 +140,7 @@ function RetractSheet(p: { onClose: () => void }): JSX.Element {
 		<p>{t("cut.retractnote")}</p>
 		<div class="keys wrap">{RETRACTS.map((x) => <PressKey onPress={() => go(x)} why={whyNot("retract")}>{short(x)} mm</PressKey>)}</div>
 		<div class="keys"><NumberField label={t("cut.retractby")} unit="mm" value={text} onInput={set} />
-			<PressKey class="primary" onPress={() => go(mm)} why={ok ? whyNot("retract") : t("probe.bad")}>{t("retract").replace("\u2026", "")}</PressKey></div>
+			<PressKey class="primary" onPress={() => go(mm)} why={ok ? whyNot("retract") : t("probe.bad")}>{t("retract")}</PressKey></div>
 		<h3>{t("cut.step")}</h3>
 		<div class="keys"><Key onPress={() => void act("step", { arg: -1 })} why={whyNot("retract")}>{"\u2212"}1</Key>
 			<Key onPress={() => void act("step", { arg: 1 })} why={whyNot("retract")}>+1</Key></div>
@@ -190,7 +190,7 @@ function Foot(p: { open: (what: string) => void }): JSX.Element {
 		<div class="chips">{chips().map((c) => <button type="button" id={`chip-${c.id}`} class={`chip ${c.id === "override" && s.override === 0 ? "zero" : ""} ${s.set.some((f) => c.open.split(" ").includes(f)) ? "set" : ""}`} onClick={() => p.open(c.open)}>
 			<span>{c.label}</span><b>{c.text}</b></button>)}</div>
 		<div class="keys">
-			<Key id="retract" why={whyNot("retract")} onPress={() => p.open("retract")}>{t("retract")}</Key>
+			<Key id="retract" why={whyNot("retract")} onPress={() => p.open("retract")}>{t("more")}</Key>
 			<Middle open={p.open} />
 			<PressKey id="start" class={isRunning() || s.asks ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
 				onPress={() => void act("start", { job: s.job })}>{t(held ? "resume" : "start")}</PressKey>

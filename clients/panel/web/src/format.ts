@@ -53,3 +53,7 @@ export function moment(ms: number): string {
 		month: "short", day: "2-digit", hour: "2-digit", minute: "2-digit", second: "2-digit", hour12: false,
 	});
 }
+
+export function unitWord(unit: string): string {
+	return unit.replace("us", "\u00b5s").replace("um", "\u00b5m").replace("mm3", "mm\u00b3");
+}

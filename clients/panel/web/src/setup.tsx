@@ -162,8 +162,8 @@ function ProbeForm(p: { probe: Probe }): JSX.Element {
 		else feel({ job: a.reason, target, was: now });
 	};
 	return <div class="probe"><div class="probe-top"><Drawing id={p.probe.id} v={v} /><p>{t(`probe.${p.probe.id}.about`)}</p></div>
-		{!own && <div class="field"><span>{t("touch.into")}</span><Choice label={t("touch.into")} value={work} onChange={(w) => { into(w); feel(null); }} of={WORKS.map((w) => ({ value: w, text: w }))} /></div>}
-		<div class="fields">{p.probe.asks.filter((a) => !a.when || a.when(v)).map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice class="wrap" label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.filter((c) => !/^[XYZ]$/.test(c) || hasAxis(c)).map((c) => ({ value: c, text: c === "new" || c === "worn" ? t(`touch.${c}`) : c.replace("-", "\u2212") }))} /></label> :
+		<div class="fields">{!own && <label class="field"><span>{t("touch.into")}</span><select id="touch-into" value={work} onChange={(e) => { into(e.currentTarget.value); feel(null); }}>{WORKS.map((w) => <option key={w} value={w}>{w}</option>)}</select></label>}
+			{p.probe.asks.filter((a) => !a.when || a.when(v)).map((a) => a.choices ? <label class="field"><span>{t(a.label)}</span><Choice class="wrap" label={t(a.label)} value={v[a.key] ?? ""} onChange={(x) => change(a.key, x)} of={a.choices.filter((c) => !/^[XYZ]$/.test(c) || hasAxis(c)).map((c) => ({ value: c, text: c === "new" || c === "worn" ? t(`touch.${c}`) : c.replace("-", "\u2212") }))} /></label> :
 			<NumberField key={a.key} label={a.may ? t("bracket", { what: t(a.label), is: t("probe.nozero") }) : t(a.label)} unit={a.unit} value={v[a.key] ?? ""} onInput={(x) => change(a.key, x)} />)}</div>
 		<Changes target={target} felt={felt} state={state} now={now} />
 		<p class="note">{t("probe.warn")}</p>
@@ -174,8 +174,8 @@ function ProbeForm(p: { probe: Probe }): JSX.Element {
 function ProbeCard(): JSX.Element {
 	const [at, set] = useDraft<ProbeId>("probe", "edge");
 	const probe = PROBES.find((x) => x.id === at) as Probe;
-	return <Card title={t("setup.probe")} class="probing">
-		<Choice class="wrap" label={t("setup.probe")} value={at} onChange={set} of={PROBES.filter((x) => !x.electrode || hasAxis("Z")).map((x) => ({ value: x.id, text: t(`probe.${x.id}`) }))} />
+	return <Card title={t("setup.probe")} class="probing" right={<select id="probe-form" aria-label={t("setup.probe")} value={at} onChange={(e) => set(e.currentTarget.value as ProbeId)}>
+		{PROBES.filter((x) => !x.electrode || hasAxis("Z")).map((x) => <option key={x.id} value={x.id}>{t(`probe.${x.id}`)}</option>)}</select>}>
 		<ProbeForm probe={probe} key={at} /></Card>;
 }
 

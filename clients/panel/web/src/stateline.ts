@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // One line that says how it is: the state, why it waits, what to do.
-import { number } from "./format";
+import { number, short, unitWord } from "./format";
 import { link } from "./link";
 import { isRunning } from "./can";
 import { electrodeKnown, lineKnown } from "./lines";
@@ -34,6 +34,8 @@ export function hasWarning(): boolean {
 }
 
 function idle(): string {
+	const { lost } = link.state;
+	if (lost) return t("why.idle.lost", { axes: [...lost].join(" ") });
 	if (unhomed()) return t("why.idle.unhomed", { axes: unhomed() });
 	return t(link.state.queue > 0 ? "why.idle.queue" : "why.idle");
 }
@@ -72,7 +74,10 @@ function named(n: number): string {
 }
 
 function fieldsOf(bits: number): string {
-	return list((link.hello?.fields ?? []).filter((_, i) => bits >> i & 1).map((f) => fieldWord(f.name, f.help)));
+	return list((link.hello?.fields ?? []).filter((_, i) => bits >> i & 1).map((f) => {
+		const value = link.state.values[f.name];
+		return fieldWord(f.name, f.help) + (value === undefined ? "" : ` ${short(value)} ${unitWord(f.unit)}`);
+	}));
 }
 
 function machineLine(): StateLine {
@@ -89,7 +94,7 @@ function machineLine(): StateLine {
 		return { title: t("state.interrupted"), why: t("why.interrupted"), tone: "warn", shape: "bars" };
 	if (s.state === "idle" && storeWhy())
 		return { title: stateWord("idle"), why: t("why.store", { why: storeWhy() }), tone: "warn", shape: "ring" };
-	if (s.state === "idle") return { title: stateWord("idle"), why: idle(), tone: "calm", shape: "ring" };
+	if (s.state === "idle") return { title: stateWord("idle"), why: idle(), tone: s.lost ? "warn" : "calm", shape: "ring" };
 	if (s.state === "hold" && !isRunning()) return held();
 	const word = `why.${s.state}`;
 	if (s.stand) return { title: t("state.waits"), tone: "warn", shape: "bars", why: stands() };

@@ -4,13 +4,11 @@
 // within units and limits, to be exported.
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
-import { parse, short } from "./format";
+import { moment, parse, short, unitWord } from "./format";
 import { link, type Field } from "./link";
 import { whyNot } from "./can";
-import { moment } from "./format";
 import { Card, Key, PressKey, act } from "./parts";
 import { save, useAsk, useDraft } from "./use";
-import { unitWord } from "./values";
 import { fieldWord, list, t } from "./words";
 
 interface Row { name: string; line: number; values: Record<string, number> }

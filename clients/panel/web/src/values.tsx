@@ -4,14 +4,10 @@
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { whyNot } from "./can";
-import { parse, short } from "./format";
+import { parse, short, unitWord } from "./format";
 import { link, type Field } from "./link";
 import { Key, NumberField, Sheet, act } from "./parts";
 import { fieldWord, list, t } from "./words";
-
-export function unitWord(unit: string): string {
-	return unit.replace("us", "\u00b5s").replace("um", "\u00b5m").replace("mm3", "mm\u00b3");
-}
 
 /** A step a finger would want: a twentieth, as 1, 2 or 5 times a power of ten. */
 export function stepOf(f: Field, value: number): number {

@@ -56,6 +56,7 @@ const TOLD: [RegExp, Put][] = [
 	[/^job (.*): fault (\S+?)( \(.*\))? in line (\d+); reset, then start goes on, stop ends it$/, (_, job, f, own, line) => `任务 ${job}，第 ${line} 行：${faultOf(f as string)}${own ?? ""}；复位后启动可继续，结束任务可放弃`],
 	[/^job (.*): the gap servo hunts: (\d+) retracts in a row without progress; .*$/, (_, job, n) => `任务 ${job}：间隙伺服振荡，连续 ${n} 次回退而无进展。${zhHunting}`],
 	[/^interrupted in (\w+), line (\d+), at (\S+) mm of (\S+), cut to (\S+) mm; last seen (.*); if the host did not go down, edmd's log says why$/, (_, s, line, at, of, far, seen) => `中断于${STATES[s as string] ?? s}，第 ${line} 行，路径 ${at} / ${of} mm 处，已加工到 ${far} mm；最后所见 ${seen}；若主机没有断电，原因在 edmd 的日志里`],
+	[/^'(.*)'; a number of mm from (\S+) to (\S+)$/, "“$1”；须为 $2 到 $3 mm"],
 	[/^nothing may move now: .*; edmctl faults (\S+) tells why, and what clears it$/, (_, f) => `现在不能移动：${faultOf(f as string)}；edmctl faults ${f} 说明原因和办法`],
 	[/^(\w) was seen last at (\S+), and its drive tells (\S+): it was moved; look, and place \w is MM$/, "$1 上次在 $2，它的驱动器报告 $3：它被移动过；请查看，再说明 $1 的位置"],
 	[/^edmd is lost: its cycle stands still$/, "控制循环停住或 edmd 已退出"], [/^edmd is there$/, "edmd 已恢复"],
@@ -69,7 +70,30 @@ const TOLD: [RegExp, Put][] = [
 	[/^(\S+): login as (.*) was refused$/, "$1：以 $2 登录被拒绝"], [/^(\S+): (\S+) logged in as (\w+)$/, (_, from, user, role) => `${from}：${user} 以${ROLES[role as string] ?? role}登录`],
 ];
 
+// What the machine asks for (daemon/jobs/asks.c), and what it says to who did not do that.
+const ASKS: [RegExp, Put][] = [
+	[/^not before this: (.*)$/, (_, asks) => `须先做到：${zhSaid(asks as string)}`],
+	[/^that is not what the machine asks for: (.*)$/, (_, asks) => `机器要求的不是这个：${zhSaid(asks as string)}`],
+	[/^the program stops in line (\d+)(?:: (.*))?; edmctl start goes on$/, (_, line, words) => `程序在第 ${line} 行停止${words ? `：${words}` : ""}；启动可继续`],
+	[/^put electrode (\d+)( .+?)? in(?: \((\d+) is in\))?; edmctl done \d+, then edmctl start$/, (_, n, name, is) => `请装入电极 ${n}${name ?? ""}${is ? `（现在装的是 ${is}）` : ""}；确认，然后启动`],
+	[/^take the electrode out(?: \((\d+) is in\))?; edmctl done 0, then edmctl start$/, (_, is) => `请取下电极${is ? `（现在装的是 ${is}）` : ""}；确认，然后启动`],
+	[/^electrode (\d+) is in; edmctl start goes on$/, "电极 $1 已装入；启动可继续"],
+	[/^set (.*?)(?: for (\w+))? at the generator; edmctl done, then edmctl start$/, (_, values, of) => `请在脉冲电源上设定${of ? ` ${of}：` : " "}${values}；确认，然后启动`],
+	[/^the generator is set; edmctl start goes on$/, "脉冲电源已设定；启动可继续"],
+	[/^the PLC carries out an M code: M(\d+); it goes on by itself$/, "PLC 正在执行 M$1；自动继续"],
+	[/^it was held by command(?: of (.*?))?; edmctl start goes on, edmctl stop ends the job$/, (_, by) => `由命令保持${by ? `（${by}）` : ""}；启动可继续，也可结束任务`],
+];
+
 const SHORT: Record<string, string> = {
+	"it asks for nothing": "它没有要求什么",
+	"the job is ready; edmctl start begins it": "任务已就绪；启动即开始",
+	"the PLC held it; once the PLC lets go, start goes on": "PLC 保持了它；PLC 放开后，启动可继续",
+	"a fault was reset; edmctl start goes on, edmctl stop ends the job": "故障已复位；启动可继续，也可结束任务",
+	"edmd was started anew; look at the machine; edmctl start goes on, edmctl stop ends the job": "edmd 已重新启动；请查看机床；启动可继续，也可结束任务",
+	"the program is at its end; edmctl stop ends the job": "程序已到末尾；请结束任务",
+	"the generator does not have the condition yet; it goes on by itself": "脉冲电源还没有此条件；自动继续",
+	"the override is 0; edmctl override 100, or the knob of the PLC": "定位倍率为 0；请调到 100 %，或用 PLC 的旋钮",
+	"the drives do not have power yet; it goes on by itself": "驱动器还没有上电；自动继续",
 	"done": "完成", "removed": "已移除", "moved": "已移动", "ready": "就绪", "no contact": "没有碰到", "none": "无",
 	"the store failed": "存储失败", "the job has ended": "任务已结束", "the holder is empty": "夹头为空",
 	"64 keys are there; remove one": "已有 64 个密钥；请移除一个",
@@ -145,6 +169,6 @@ function put(text: string, table: [RegExp, Put][]): string {
 export function zhSaid(text: string): string {
 	const known = zhHost[text] ?? SHORT[text] ?? (text in zhFaults ? faultOf(text) : undefined);
 	if (known) return known;
-	const is = put(put(text, TOLD), HOST);
+	const is = put(put(put(text, ASKS), TOLD), HOST);
 	return is === text ? text : is.replace(/; /g, "；").replace(/, (?=\S)/g, "，");
 }
