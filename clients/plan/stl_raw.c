@@ -192,14 +192,28 @@ static int take_facet(struct source *s, struct stl_raw *raw)
 	return err;
 }
 
+/* It is not text, and not as long as a binary file has to be. */
+static int refuse_length(const struct source *s)
+{
+	char why[120];
+	uint32_t n = 0;
+
+	if (s->bytes >= HEAD_BYTES)
+		memcpy(&n, s->text + HEAD_BYTES - 4, 4);
+	snprintf(why, sizeof(why), "not text, and %zu bytes where its %u "
+		 "triangles take %llu", s->bytes, n,
+		 (unsigned long long)HEAD_BYTES +
+		 (unsigned long long)n * TRI_BYTES);
+	return refuse(s, why);
+}
+
 static int read_text(struct source *s, struct stl_raw *raw)
 {
 	bool within = false;
 	int err = 0;
 
 	if (memchr(s->text, '\0', s->bytes))
-		return refuse(s, "neither text nor as long as its number of "
-			      "triangles says: it may be cut short");
+		return refuse_length(s);
 	s->at = s->text;
 	s->line = 1;
 	while (err == 0) {

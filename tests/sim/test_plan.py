@@ -409,3 +409,16 @@ def test_ctrl_c_while_files_are_loaded_ends_it_at_once(channel, tmp_path):
         finally:
             p.kill()
     assert not out.exists()
+
+
+@pytest.mark.parametrize("more", (-30, 7))
+def test_a_binary_mesh_of_another_length_is_refused_with_both(channel,
+                                                              tmp_path, more):
+    raw = (channel / "part.stl").read_bytes()
+    (tmp_path / "p.stl").write_bytes(raw[:more] if more < 0 else
+                                     raw + bytes(more))
+    r = plan("--part", tmp_path / "p.stl", "--electrode",
+             channel / "electrode.stl", "--check", channel / "dense.ngc")
+    assert r.returncode == 65
+    assert "%d bytes where its" % (len(raw) + more) in r.stderr
+    assert "take %d;" % len(raw) in r.stderr
