@@ -19,7 +19,7 @@
 /* Of one pair of bodies. */
 struct proved {
 	pthread_mutex_t lock;
-	uint32_t n;			/* so many were put; the last are kept */
+	uint32_t n;			/* so many were put in */
 	struct proved_block {
 		double from[INTERP_NAXES], to[INTERP_NAXES];
 		double mm;
