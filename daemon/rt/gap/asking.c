@@ -18,9 +18,14 @@ void asking_init(struct asking *a)
 		a->now[i] = a->place[i] = a->hand[i] = (double)NAN;
 }
 
+static uint32_t tried_fields(const struct asking *a)
+{
+	return a->trial.fields | a->leased.fields;
+}
+
 static bool is_tried(const struct asking *a, int i)
 {
-	return (a->trial.fields | a->leased.fields) >> i & 1;
+	return tried_fields(a) >> i & 1;
 }
 
 static double tried(const struct asking *a, int i)
@@ -61,12 +66,12 @@ static double has_by_now(const struct cycle *c, int i)
 	       process_nearest(d, i, says->told[i]) : (double)NAN;
 }
 
-/* Before @value is asked for. */
+/* Before @value is asked for.  Where all is in force at once, nothing is kept. */
 static void lend(struct cycle *c, int i, double value)
 {
 	struct asking *a = &c->asking;
 
-	if (is_lent(a, i) || isnan(value))
+	if (!c->config.asking.limited || is_lent(a, i) || isnan(value))
 		return;
 	a->lent |= 1u << i;
 	a->before[i] = has_by_now(c, i);
@@ -250,26 +255,26 @@ static bool is_confirmed(const struct cycle *c, uint32_t version)
 }
 
 /* Whatever is asked for is in force at once, and yet each change of it has its
- * version. */
-static void ask_freely(struct cycle *c)
+ * version.  Return: is there anything new?  Hardly ever. */
+static bool ask_freely(struct cycle *c)
 {
 	struct asking *a = &c->asking;
 	double now[INTERP_NGENERATOR];
 
-	for (int i = 0; i < INTERP_NGENERATOR; i++)
-		now[i] = asked_for(c, i);
-	now[INTERP_TECH_OFF_US] = against_arcs(c, now[INTERP_TECH_OFF_US]);
-	/* Hardly ever is there anything new. */
+	memcpy(now, c->out.pulse, sizeof(now));
+	now[INTERP_TECH_OFF_US] = arcing_off_us(c);
+	for (int i = 0; tried_fields(a) && i < INTERP_NGENERATOR; i++)
+		now[i] = is_tried(a, i) ? tried(a, i) : now[i];
 	if (memcmp(now, a->now, sizeof(now)) == 0)
-		return;
+		return false;
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
 		if (same(a->now[i], now[i]))
 			continue;
-		lend(c, i, now[i]);
 		a->now[i] = now[i];
 		a->version++;
 		a->age = 0;
 	}
+	return true;
 }
 
 /* Until it has what it is asked for, it may have what it had.  What it is not
@@ -304,10 +309,10 @@ void asking_step(struct cycle *c, const struct io_inputs *in)
 	a->age++;
 	lease_step(a);
 	if (!c->config.asking.limited) {
-		ask_freely(c);
-		a->has = is_confirmed(c, a->version);
-		bound_ignition(c);
-		give_back(c);
+		if (ask_freely(c) || !a->has) {
+			a->has = is_confirmed(c, a->version);
+			bound_ignition(c);
+		}
 		return;
 	}
 	hear_hand(c);
