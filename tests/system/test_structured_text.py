@@ -32,7 +32,9 @@ table = shop.tech
 TABLE = """condition, peak_a [A], on_us [us], off_us [us], ignition_v [V], servo_v [V], polarity
 C200, 6, 8, 20, 180, 15, -1
 C100, 12, 20, 50, 120, 22.5, 1
+C300, 9, 20, -, -, 22.5, 1
 """
+OWN = {"OwnOffTime": 300, "OwnVoltage": 900}
 VALUES = ("Current", "OnTime", "OffTime", "Voltage")
 JOB = b"G21 G90 F60\nC200 G1 X1\nT3 M6\nC100\nG1 X40\nM30\n"
 
@@ -98,7 +100,7 @@ class Plc:
         values = struct.unpack("<4H", f[0x680 + NODE])
         b.scan(Asked=number, AskedNegative=bits & 1, AskedIso=bits >> 1 & 1,
                HasServo=1, ServoRead=self.read is not None,
-               AskedServo=self.read or 0, Ready=self.busy == 0,
+               AskedServo=self.read or 0, Ready=self.busy == 0, **OWN,
                **{"Asked" + v: x for v, x in zip(VALUES, values)})
         self.busy -= self.busy > 0
         if b["Given"] not in (was, 0):
@@ -145,6 +147,14 @@ def test_it_sets_the_generator_and_changes_the_electrode(shop):
         "polarity": 1, "iso": 0, "servo_v": 22.5}), 20)
     # C200 of the paper came whole.
     assert [60, 80, 200, 1800, 150, 1, 0] in plc.log
+
+
+def test_what_a_condition_does_not_give_is_the_generators_own(shop):
+    m, plc = shop
+    text = b"G21 G90 F60\nC300 G1 X40\nM30\n"
+    rig.until(lambda: m.client.submit(text, "work").code == 0)
+    rig.until(lambda: plc.real == [90, 200, 300, 900, 225, 0, 0], 20)
+    rig.until(lambda: told(m)[0], 20)
 
 
 def test_after_edmd_was_killed_in_a_change_the_place_is_what_it_has(shop):

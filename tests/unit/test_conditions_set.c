@@ -245,6 +245,35 @@ static void a_set_in_a_retract_is_for_the_cut(void **state)
 	rig_free(&r);
 }
 
+/* A change of it is written down with the value that it replaces. */
+static void the_polarity_of_a_retract_over_m4_is_that_of_the_cut(void **state)
+{
+	const struct conds t = usual_conds();
+	struct cycle_config k = usual_config();
+	struct interp_build *b = begin(INTERP_SIMULTANEOUS);
+	struct rig r;
+
+	(void)state;
+	assert_true(isnan(conditions_value(&(struct cycle) { .loaded = false },
+					   INTERP_TECH_POLARITY)));
+	cut_in(b, -2, 2, &t.c2);
+	action(b, INTERP_AUX, INTERP_AUX_POWER_NEGATIVE);
+	cut_in(b, -4, 2, &t.c2);
+	rig_load(&r, b, &k);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	cut_until(&r, 1.9);
+	assert_true(conditions_value(&r.c, INTERP_TECH_POLARITY) == 1);
+	cut_until(&r, 2.1);
+	for (int i = 0; i < 1000 && place(&r) > 1.9; i++)
+		step(&r, SHORTED_V);
+	assert_int_equal(r.c.state, STATE_RETRACT);
+	assert_false(io_is_negative(&r.out));
+	assert_true(conditions_value(&r.c, INTERP_TECH_POLARITY) == -1);
+	assert_int_equal(set(&r, INTERP_TECH_POLARITY, 1), ANSWER_DONE);
+	assert_true(conditions_value(&r.c, INTERP_TECH_POLARITY) == 1);
+	rig_free(&r);
+}
+
 static void a_set_that_cannot_be_leaves_all_as_it_was(void **state)
 {
 	static const struct {
@@ -428,6 +457,7 @@ int main(void)
 		cmocka_unit_test(a_set_goes_over_and_is_taken_back),
 		cmocka_unit_test(a_set_belongs_to_its_condition),
 		cmocka_unit_test(a_set_in_a_retract_is_for_the_cut),
+		cmocka_unit_test(the_polarity_of_a_retract_over_m4_is_that_of_the_cut),
 		cmocka_unit_test(a_set_that_cannot_be_leaves_all_as_it_was),
 		cmocka_unit_test(the_list_of_sets_is_bounded),
 		cmocka_unit_test(polarity_is_the_sets_then_the_programs_then_the_conditions),

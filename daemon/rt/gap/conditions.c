@@ -30,22 +30,26 @@ static struct interp_tech wanted(const struct cycle *c, uint16_t cond)
 	return t;
 }
 
-/* An electrode is positive where nobody says it: one of a job before may have
- * been negative. */
-static void put_polarity(struct cycle *c)
+/* In @cond, behind what the program @said.  An electrode is positive where nobody
+ * says it: one of a job before may have been negative. */
+static double polarity(const struct cycle *c, uint16_t cond, uint32_t said)
 {
 	const struct conditions *p = &c->conditions;
-	double *to = &c->out.pulse[INTERP_TECH_POLARITY];
+	double is = said == INTERP_AUX_POWER_NEGATIVE ? -1 : said ? 1 :
+		    c->cursor.p.conds[cond].tech.v[INTERP_TECH_POLARITY];
 
-	*to = p->said == INTERP_AUX_POWER_NEGATIVE ? -1 : p->said ? 1 :
-	      c->cursor.p.conds[p->cond].tech.v[INTERP_TECH_POLARITY];
 	for (uint32_t i = 0; i < p->nsets; i++) {
-		if (p->set[i].cond == p->cond &&
+		if (p->set[i].cond == cond &&
 		    p->set[i].field == INTERP_TECH_POLARITY)
-			*to = p->set[i].value;
+			is = p->set[i].value;
 	}
-	if (isnan(*to))
-		*to = 1;
+	return isnan(is) ? 1 : is;
+}
+
+static void put_polarity(struct cycle *c)
+{
+	c->out.pulse[INTERP_TECH_POLARITY] =
+		polarity(c, c->conditions.cond, c->conditions.said);
 }
 
 /* What edmd's own servo goes by too; NAN: it does not cross. */
@@ -135,6 +139,7 @@ bool conditions_begin(struct cycle *c)
 	c->conditions.at = c->conditions.said = 0;
 	hear_program(c);
 	c->conditions.of_cut = c->cursor.seg.cond;
+	c->conditions.said_of_cut = c->conditions.said;
 	return apply(c, c->conditions.of_cut);
 }
 
@@ -158,10 +163,12 @@ bool conditions_follow(struct cycle *c)
 {
 	const uint16_t cond = cond_here(c);
 
-	if (c->state != STATE_JUMP && c->state != STATE_RETRACT)
-		c->conditions.of_cut = cond;
 	if (hear_program(c))
 		put_polarity(c);
+	if (c->state != STATE_JUMP && c->state != STATE_RETRACT) {
+		c->conditions.of_cut = cond;
+		c->conditions.said_of_cut = c->conditions.said;
+	}
 	return cond == c->conditions.cond || apply(c, cond);
 }
 
@@ -253,10 +260,10 @@ double conditions_value(const struct cycle *c, uint32_t field)
 	const struct conditions *p = &c->conditions;
 	struct interp_tech now, of_cut;
 
-	if (!is_used(field))
+	if (!is_used(field) || !c->loaded)
 		return (double)NAN;
 	if (field == INTERP_TECH_POLARITY)
-		return io_is_negative(&c->out) ? -1 : 1;
+		return polarity(c, p->of_cut, p->said_of_cut);
 	if (p->of_cut != p->cond) {
 		of_cut = wanted(c, p->of_cut);
 		process_base(&now, &c->config.gap, &c->config.jump);
