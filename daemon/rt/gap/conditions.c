@@ -30,8 +30,8 @@ static struct interp_tech wanted(const struct cycle *c, uint16_t cond)
 	return t;
 }
 
-/* In @cond, behind what the program @said.  An electrode is positive where nobody
- * says it: one of a job before may have been negative. */
+/* In @cond, behind what the program @said.  An electrode is positive where
+ * nobody says it: one of a job before may have been negative. */
 static double polarity(const struct cycle *c, uint16_t cond, uint32_t said)
 {
 	const struct conditions *p = &c->conditions;

@@ -38,8 +38,9 @@ struct conditions {
 					 * ... */
 	uint32_t said;			/* ... the last M3 or M4, enum
 					 * interp_aux; 0: none */
-	uint16_t of_cut;		/* of where it last did not go back ... */
-	uint32_t said_of_cut;		/* ... and said there */
+	uint16_t of_cut;		/* of where it last did not go back,
+					 * ... */
+	uint32_t said_of_cut;		/* ... and what was said there */
 	uint32_t nsets;
 	struct conditions_set set[CONDITIONS_SETS_MAX];
 };
