@@ -70,12 +70,17 @@ static inline char tour_letter(const struct tour *w)
 
 /* -- commission_file.c ----------------------------------------------------- */
 
+struct tour_key {
+	const char *key;
+	char value[80];
+};
+
 /**
- * tour_write() - set a key of the machine file, unless edmd would refuse the
- * file then, which is told.
+ * tour_write() - set @n keys of a section of the machine file, all or none,
+ * unless edmd would refuse the file then, which is told.  @n: 1 to 31.
  */
-bool tour_write(struct tour *w, const char *section, const char *key,
-		const char *value);
+bool tour_write(struct tour *w, const char *section, const struct tour_key *key,
+		size_t n);
 
 /* -- commission_move.c ----------------------------------------------------- */
 

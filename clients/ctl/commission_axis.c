@@ -45,13 +45,25 @@ static void axis_section(const struct tour *w, char to[16])
 	snprintf(to, 16, "axis.%c", tour_letter(w));
 }
 
-static bool write_number(struct tour *w, const char *key, double value)
+static void number(struct tour_key *key, double value)
 {
-	char section[16], text[32];
+	snprintf(key->value, sizeof(key->value), "%.10g", value);
+}
+
+static bool write_numbers(struct tour *w, const struct tour_key *key, size_t n)
+{
+	char section[16];
 
 	axis_section(w, section);
-	snprintf(text, sizeof(text), "%.10g", value);
-	return tour_write(w, section, key, text);
+	return tour_write(w, section, key, n);
+}
+
+static bool write_number(struct tour *w, const char *key, double value)
+{
+	struct tour_key one = { .key = key };
+
+	number(&one, value);
+	return write_numbers(w, &one, 1);
 }
 
 static bool has_drives(const struct tour *w)
@@ -73,16 +85,18 @@ static bool turn(struct tour *w)
 {
 	const struct config_drive *d = &w->config.drive[w->axis];
 	const char *line = w->config.gpio.line[LINE_DIR + w->axis];
-	char key[16], text[80];
+	struct tour_key one;
+	char key[16];
 
 	if (has_drives(w))
 		return write_number(w, "drive_increments", -d->increments);
 	if (config_machine_is(&w->config, MACHINE_NO_WIRES))
 		return false;
 	snprintf(key, sizeof(key), "dir_%c", tour_letter(w));
-	snprintf(text, sizeof(text), "%s%s", *line == '!' ? "" : "!",
+	one.key = key;
+	snprintf(one.value, sizeof(one.value), "%s%s", *line == '!' ? "" : "!",
 		 line + (*line == '!'));
-	return tour_write(w, "gpio", key, text);
+	return tour_write(w, "gpio", &one, 1);
 }
 
 static void tell_swapped(struct tour *w, char other)
@@ -134,6 +148,8 @@ void tour_direction(struct tour *w)
 static bool rescale(struct tour *w, double times)
 {
 	const struct config_drive *d = &w->config.drive[w->axis];
+	struct tour_key key[] = { { .key = "drive_pulses" },
+				  { .key = "drive_increments" } };
 	double more = 1;
 
 	if (!has_drives(w))
@@ -142,10 +158,9 @@ static bool rescale(struct tour *w, double times)
 	while (fabs(d->increments / times) * more < FINE &&
 	       d->pulses * more * 10 <= PULSES_MOST)
 		more *= 10;
-	return (more == 1 || write_number(w, "drive_pulses",
-					  d->pulses * more)) &&
-	       write_number(w, "drive_increments",
-			    round(d->increments / times * more));
+	number(&key[0], d->pulses * more);
+	number(&key[1], round(d->increments / times * more));
+	return write_numbers(w, key, 2);
 }
 
 void tour_scale(struct tour *w)
@@ -461,10 +476,15 @@ static double wave(struct tour *w, struct tour_trace *t)
 /* What is told, into the machine file; its lost motion is a step of its own. */
 static void write_loop(struct tour *w, const struct interp_identified *d)
 {
+	struct tour_key key[INTERP_IDENTIFY_BACKLASH];
+	size_t n = 0;
+
 	for (int i = 0; i < INTERP_IDENTIFY_BACKLASH; i++)
-		if (d->told[i] && !write_number(w, ctl_identify_key[i],
-						d->value[i]))
-			return;
+		if (d->told[i]) {
+			key[n].key = ctl_identify_key[i];
+			number(&key[n++], d->value[i]);
+		}
+	write_numbers(w, key, n);
 }
 
 static void tell_following(struct tour *w, const struct tour_trace *t,

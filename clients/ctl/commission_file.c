@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * commission_file.c - set a key of the machine file
+ * commission_file.c - set keys of the machine file
  *
  * The rest of the file stays as it is, with its comments.  The new file is read
  * as edmd reads it before it takes the place of the old one.
@@ -28,34 +28,48 @@ static bool begins(const char *line, const char *word, const char *ends)
 
 struct copy {
 	FILE *to;
-	const char *section, *key, *value;
-	bool inside, done;
+	const char *section;
+	const struct tour_key *key;
+	size_t n;
+	uint32_t done;			/* a bit of each key */
+	bool inside;
 };
 
-static void put(struct copy *c)
+static void put(struct copy *c, size_t i)
 {
-	if (!c->done)
-		fprintf(c->to, "%s = %s\n", c->key, c->value);
-	c->done = true;
+	if (!(c->done >> i & 1))
+		fprintf(c->to, "%s = %s\n", c->key[i].key, c->key[i].value);
+	c->done |= 1u << i;
+}
+
+/* Which of the keys the line gives; else n. */
+static size_t key_of(const struct copy *c, const char *line)
+{
+	size_t i = 0;
+
+	while (i < c->n && !begins(line, c->key[i].key, " \t="))
+		i++;
+	return c->inside ? i : c->n;
 }
 
 static void copy_line(struct copy *c, const char *line)
 {
+	const size_t key = key_of(c, line);
 	char head[64];
 
 	snprintf(head, sizeof(head), "[%s]", c->section);
 	if (line[strspn(line, " \t")] == '[') {
 		c->inside = begins(line, head, " \t\r\n;");
 		fputs(line, c->to);
-	} else if (c->inside && begins(line, c->key, " \t=")) {
+	} else if (key < c->n) {
 		/* One that is said again is left out. */
-		put(c);
+		put(c, key);
 	} else {
 		fputs(line, c->to);
 	}
 }
 
-/* Behind a section that has no such key yet it begins once more. */
+/* Behind a section that lacks one of the keys it begins once more. */
 static int copy_all(FILE *from, struct copy *c)
 {
 	char *line = NULL;
@@ -67,9 +81,10 @@ static int copy_all(FILE *from, struct copy *c)
 		whole = strchr(line, '\n') != NULL;
 	}
 	free(line);
-	if (!c->done)
+	if (c->done + 1 != 1u << c->n)
 		fprintf(c->to, "%s[%s]\n", whole ? "" : "\n", c->section);
-	put(c);
+	for (size_t i = 0; i < c->n; i++)
+		put(c, i);
 	return ferror(from) ? -EIO : written_close(c->to);
 }
 
@@ -92,14 +107,32 @@ static int make(const struct tour *w, const char *fresh, struct copy *c)
 	return err;
 }
 
-bool tour_write(struct tour *w, const char *section, const char *key,
-		const char *value)
+/* It has taken the place of the old one. */
+static void tell_written(struct tour *w, const struct copy *c)
+{
+	json_t *wrote = json_object_get(w->now, "wrote");
+	char text[SAID_CHARS];
+
+	if (!wrote) {
+		wrote = json_array();
+		json_object_set_new(w->now, "wrote", wrote);
+	}
+	for (size_t i = 0; i < c->n; i++) {
+		snprintf(text, sizeof(text), "[%s] %s = %s", c->section,
+			 c->key[i].key, c->key[i].value);
+		json_array_append_new(wrote, json_string(text));
+		printf("written: %s\n", text);
+	}
+	w->changed = true;
+}
+
+bool tour_write(struct tour *w, const char *section, const struct tour_key *key,
+		size_t n)
 {
 	static struct machine_config trial;
 	struct interp_diag diag;
-	struct copy c = { .section = section, .key = key, .value = value };
-	char fresh[PATH_MAX + 8], file[PATH_MAX], text[SAID_CHARS];
-	json_t *wrote;
+	struct copy c = { .section = section, .key = key, .n = n };
+	char fresh[PATH_MAX + 8], file[PATH_MAX];
 	int err;
 
 	/* A link stays one. */
@@ -113,21 +146,13 @@ bool tour_write(struct tour *w, const char *section, const char *key,
 		interp_diag_tell(&diag, fresh);
 	if (err == 0 && rename(fresh, file) < 0)
 		err = -errno;
-	snprintf(text, sizeof(text), "[%s] %s = %s", section, key, value);
-	if (err < 0) {
-		fprintf(stderr, "edmctl: %s: %s is not written%s%s\n", w->path,
-			text, err == -EINVAL ? "" : ": ",
-			err == -EINVAL ? "" : strerror(-err));
-		unlink(fresh);
-		return false;
+	if (err == 0) {
+		tell_written(w, &c);
+		return true;
 	}
-	wrote = json_object_get(w->now, "wrote");
-	if (!wrote) {
-		wrote = json_array();
-		json_object_set_new(w->now, "wrote", wrote);
-	}
-	json_array_append_new(wrote, json_string(text));
-	printf("written: %s\n", text);
-	w->changed = true;
-	return true;
+	fprintf(stderr, "edmctl: %s: [%s] %s = %s is not written%s%s\n", w->path,
+		section, key[0].key, key[0].value, err == -EINVAL ? "" : ": ",
+		err == -EINVAL ? "" : strerror(-err));
+	unlink(fresh);
+	return false;
 }

@@ -142,7 +142,7 @@ struct gap_read {
 static void propose(struct tour *w, const struct gap_read *g)
 {
 	const double step = g->open_v - g->touch_v;
-	char text[32];
+	struct tour_key key[] = { { .key = "short_v" }, { .key = "open_v" } };
 
 	tour_good(w, "the gap reads %.1f V open and %.1f V touching, with a "
 		  "noise of %.2f V; short_v %.1f and open_v %.1f are between",
@@ -150,11 +150,10 @@ static void propose(struct tour *w, const struct gap_read *g)
 		  g->touch_v + 0.2 * step, g->touch_v + 0.8 * step);
 	if (!tour_says_yes(w, "write these short_v and open_v"))
 		return;
-	snprintf(text, sizeof(text), "%.3g", g->touch_v + 0.2 * step);
-	if (!tour_write(w, "gap", "short_v", text))
-		return;
-	snprintf(text, sizeof(text), "%.3g", g->touch_v + 0.8 * step);
-	tour_write(w, "gap", "open_v", text);
+	for (int i = 0; i < 2; i++)
+		snprintf(key[i].value, sizeof(key[i].value), "%.3g",
+			 g->touch_v + (i ? 0.8 : 0.2) * step);
+	tour_write(w, "gap", key, 2);
 }
 
 void tour_sense(struct tour *w)
