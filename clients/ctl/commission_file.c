@@ -150,8 +150,9 @@ bool tour_write(struct tour *w, const char *section, const struct tour_key *key,
 		tell_written(w, &c);
 		return true;
 	}
-	fprintf(stderr, "edmctl: %s: [%s] %s = %s is not written%s%s\n", w->path,
-		section, key[0].key, key[0].value, err == -EINVAL ? "" : ": ",
+	fprintf(stderr, "edmctl: %s: [%s] %s = %s is not written%s%s\n",
+		w->path, section, key[0].key, key[0].value,
+		err == -EINVAL ? "" : ": ",
 		err == -EINVAL ? "" : strerror(-err));
 	unlink(fresh);
 	return false;
