@@ -66,7 +66,7 @@ static double has_by_now(const struct cycle *c, int i)
 	       process_nearest(d, i, says->told[i]) : (double)NAN;
 }
 
-/* Before @value is asked for.  Nothing is kept where all is in force at once. */
+/* Before @value is asked for.  Where all is free, nothing is kept. */
 static void lend(struct cycle *c, int i, double value)
 {
 	struct asking *a = &c->asking;
