@@ -236,13 +236,14 @@ void asks_event(struct jobs *j, const struct shm_event *e)
 	}, "job %s, line %u: %s", j->queue.job.name, e->line, asks);
 }
 
-void asks_held(struct jobs *j, const struct jobs_lcm_command *c)
+void asks_held(struct jobs *j, const char *by)
 {
-	snprintf(j->asks.by, sizeof(j->asks.by), "%s",
-		 c->by ? c->by->name : "");
+	/* It may have been seen to stand before that was known. */
+	j->asks.program = 0;
+	snprintf(j->asks.by, sizeof(j->asks.by), "%s", by);
 }
 
-void asks_confirmed(struct jobs *j)
+void asks_confirmed(struct jobs *j, const char *by)
 {
 	const struct shm_snapshot *s = snap_of(j);
 
@@ -253,5 +254,5 @@ void asks_confirmed(struct jobs *j)
 		.outcome = stand_row(s->kept_stand)->name,
 		.place_mm = s->place_mm,
 	}, "job %s, line %u: %s: done, says %s", j->queue.job.name, s->line,
-		  stand_row(s->kept_stand)->what, j->asks.by);
+		  stand_row(s->kept_stand)->what, by);
 }

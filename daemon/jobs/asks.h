@@ -16,8 +16,6 @@
 #include <stdint.h>
 
 struct jobs;
-struct verb;
-struct jobs_lcm_command;
 
 #define ASKS_TEXT_MAX	400
 
@@ -31,7 +29,7 @@ struct asks {
 	uint32_t program;		/* what `text` was made of */
 	struct asks_what what;
 	char text[ASKS_TEXT_MAX];
-	char by[64];			/* who held, or confirms */
+	char by[64];			/* who held */
 };
 
 /** asks_name() - the word of STATUS: "electrode"; "queue": jobs wait; only
@@ -47,10 +45,10 @@ double asks_stood_s(const struct jobs *j);
 /** asks_event() - take a SHM_EV_STAND of the loaded job. */
 void asks_event(struct jobs *j, const struct shm_event *e);
 
-/** asks_held() - this command holds the machine. */
-void asks_held(struct jobs *j, const struct jobs_lcm_command *c);
+/** asks_held() - a command of @by holds the machine; "": it goes on. */
+void asks_held(struct jobs *j, const char *by);
 
-/** asks_confirmed() - edmd has taken the confirmation. */
-void asks_confirmed(struct jobs *j);
+/** asks_confirmed() - edmd has taken the confirmation of @by. */
+void asks_confirmed(struct jobs *j, const char *by);
 
 #endif /* JOBS_ASKS_H */

@@ -40,6 +40,7 @@
 struct asked {
 	struct jobs *jobs;
 	struct asker by;
+	char name[KEYFILE_NAME_MAX];	/* of the key that asks */
 	const struct verb *verb;
 	uint32_t arg;			/* what edmd was asked for */
 	double arg_mm;
@@ -187,6 +188,26 @@ static bool is_of_drive(const struct verb *v)
 	return v->machine == SHM_OBJECT_GET || v->machine == SHM_OBJECT_SET;
 }
 
+/* What is taken alone counts: who is refused has held and confirmed nothing. */
+static void keep_who(const struct asked *a)
+{
+	switch (a->verb->machine) {
+	case SHM_DO_HOLD:
+	case SHM_DO_RETRACT:
+		asks_held(a->jobs, a->name);
+		break;
+	case SHM_DO_START:
+	case SHM_DO_RESUME:
+		asks_held(a->jobs, "");
+		break;
+	case SHM_DO_CONFIRM:
+		asks_confirmed(a->jobs, a->name);
+		break;
+	default:
+		break;
+	}
+}
+
 static void on_answer(void *arg, int code)
 {
 	struct asked *a = arg;
@@ -200,8 +221,8 @@ static void on_answer(void *arg, int code)
 		queue_started(j, code);
 	if (code == SHM_DONE && begun_is(a->verb))
 		begun_keep(j, &a->by);
-	if (code == SHM_DONE && a->verb->machine == SHM_DO_CONFIRM)
-		asks_confirmed(j);
+	if (code == SHM_DONE)
+		keep_who(a);
 	if (code == SHM_DONE && a->verb->machine == SHM_DO_PLACE)
 		done = interrupt_placed(j, (int)a->arg, a->arg_mm);
 	if (code == SHM_DONE && is_of_drive(a->verb))
@@ -257,6 +278,7 @@ static struct asked *asked_new(struct jobs *j, const struct verb *v,
 	a->jobs = j;
 	a->verb = v;
 	reply_asker_keep(&a->by, c);
+	snprintf(a->name, sizeof(a->name), "%s", c->by ? c->by->name : "");
 	return a;
 }
 
@@ -374,7 +396,6 @@ static void verb_stand(struct jobs *j, const struct verb *v,
 		       const struct jobs_lcm_command *c)
 {
 	upload_hold_all(&j->uploads);
-	asks_held(j, c);
 	queue_keep(j);
 	mdi_give_up(j);
 	verb_machine(j, v, c);
@@ -513,14 +534,6 @@ static void verb_step(struct jobs *j, const struct verb *v,
 		verbs_answer(j, c, EX_DATAERR,
 			     "no such number of nodes; 1 to 100 ahead, -1 to "
 			     "-100 back");
-}
-
-/* The number of what is done; 0 where it has none. */
-static void verb_done(struct jobs *j, const struct verb *v,
-		      const struct jobs_lcm_command *c)
-{
-	asks_held(j, c);
-	verb_machine(j, v, c);
 }
 
 static void verb_override(struct jobs *j, const struct verb *v,
@@ -769,7 +782,7 @@ static const struct verb verbs[] = {
 	  "nothing" },
 	{ "reset", ROLE_OPERATOR, VERB_ACTS, verb_machine, SHM_DO_RESET,
 	  "a fault" },
-	{ "done", ROLE_OPERATOR, VERB_ACTS, verb_done, SHM_DO_CONFIRM,
+	{ "done", ROLE_OPERATOR, VERB_ACTS, verb_machine, SHM_DO_CONFIRM,
 	  "a job that asks for something" },
 	{ "step", ROLE_OPERATOR, VERB_ACTS, verb_step, SHM_DO_STEP,
 	  "a job held on its path" },

@@ -24,9 +24,9 @@ bool stand_asks(const struct cycle *c)
 bool stand_confirm(struct cycle *c, double of)
 {
 	struct stand *s = &c->stand;
+	const double asked = s->why == STAND_ELECTRODE ? (double)s->of : 0;
 
-	if (stand_row(s->why)->ends != STAND_BY_CONFIRM ||
-	    (s->why == STAND_ELECTRODE && of != (double)s->of))
+	if (stand_row(s->why)->ends != STAND_BY_CONFIRM || of != asked)
 		return false;
 	s->confirmed = true;
 	return true;

@@ -40,7 +40,8 @@ void stand_end(struct cycle *c);
 bool stand_asks(const struct cycle *c);
 
 /** stand_confirm() - somebody says that it is done; @of says what, where the
- *  stand is about a number.  Return: false if that is not what was asked. */
+ *  stand is about a number, and is 0 elsewhere.  Return: false if that is not
+ *  what was asked. */
 bool stand_confirm(struct cycle *c, double of);
 
 /** stand_now() - why it stands in this period, waits included. */

@@ -21,6 +21,7 @@ alive_ms = 10000
 m_before = 6
 m_timeout_s = 0
 """
+BY_HAND = "\n[generator]\ninterface = none\nby_hand = on_us\n"
 EMPTY = b"G21 G90 F600\nG0 Z2\nT0 M6\nG1 Z1\nM30\n"
 
 
@@ -38,8 +39,8 @@ def shop(off):
     return off
 
 
-def ctl(m, *words, code=0):
-    r = m.ctl(*words)
+def ctl(m, *words, code=0, **more):
+    r = m.ctl(*words, **more)
     assert r.returncode == code, (words, r.returncode, r.stdout, r.stderr)
     return r.stdout + r.stderr
 
@@ -170,6 +171,20 @@ def test_an_empty_holder_is_asked_for(shop):
     assert held(shop) == []
 
 
+def test_a_number_is_no_answer_where_the_generator_is_to_be_set(off):
+    off.config.write_text(off.config.read_text().replace("null", "sim") + BY_HAND)
+    off.start()
+    off.client.submit(b"G21 G90\nC200\nG1 Z-2 F30\nM30\n", "work")
+    asked = stands(off, "setting").asks
+    for number in (["1"], ["3"], ["--", "-1"]):
+        assert f"not what the machine asks for: {asked}" in \
+            ctl(off, "done", *number, code=1)
+    ctl(off, "start", code=1)
+    assert "confirmed" not in off.log("edmd-jobs")
+    ctl(off, "done")
+    off.client.status_where(lambda s: s.asks.startswith("the generator is set"))
+
+
 def test_done_where_nothing_is_asked_is_refused(shop):
     assert "no job is loaded" in ctl(shop, "done", "3", code=1)
     shop.client.submit(CHANGE.replace(b"T3 M6\n", b""), "work", hold=True)
@@ -191,6 +206,29 @@ def test_a_hold_says_whose_it_was(shop):
     until = s.stand_s
     shop.client.status_where(lambda s: s.stand_s > until)
     ctl(shop, "override", "0")
+
+
+def test_who_was_refused_has_held_nothing(shop):
+    """Nor has who held it before."""
+    ctl(shop, "keys", "add", "anna", "operator", cwd=shop.folder)
+    anna = ("--key", str(shop.folder / "anna.key"))
+
+    def held_by():
+        said = stands(shop, "held").asks
+        return re.search("by command of ([a-z]+);", said) and said
+
+    shop.client.submit(b"G21 G90 F60\nG0 Z1\nG1 Z-20\nM30\n", "long")
+    shop.client.status_where(lambda s: s.place_mm > 1.2, 20)
+    ctl(shop, *anna, "hold")
+    assert "command of anna;" in rig.until(held_by, 20)
+    ctl(shop, "start")
+    shop.client.status_where(lambda s: not s.stand, 20)
+    ctl(shop, *anna, "done", code=1)
+    ctl(shop, "retract", "0.1")
+    assert "command of host;" in rig.until(held_by, 20)
+    ctl(shop, *anna, "done", code=1)
+    ctl(shop, "override", "0")
+    assert "command of host;" in stands(shop, "held").asks
 
 
 def test_what_a_plc_does_and_holds_is_said_and_is_no_time_of_the_job(tmp_path):
