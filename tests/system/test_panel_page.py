@@ -716,7 +716,11 @@ def test_a_power_cut_is_told(p, page):
 def test_the_daemon_dies_and_comes_back(p, page):
     p.machine.kill("edmd")
     expect(page.locator(".head h1")).to_have_text("No signal")
-    expect(page.locator(".head .state p")).to_contain_text("last known")
+    expect(page.locator(".head .state p")).to_contain_text("emergency stop")
+    show(page, "setup")
+    page.locator("#probe-run[aria-disabled=true]").wait_for()
+    show(page, "alarms")
+    expect(page.locator(".page-alarms .calm")).to_contain_text("edmd is dead")
     p.machine.start_edmd()
     expect(page.locator(".head h1")).to_have_text("Idle")
     p.machine.kill("jobs")

@@ -6,7 +6,7 @@ import { whyNot } from "./can";
 import { moment, number } from "./format";
 import { link } from "./link";
 import { Card, Key, PressKey, act } from "./parts";
-import { hasWarning, storeWhy } from "./stateline";
+import { hasWarning, stateLine, storeWhy } from "./stateline";
 import { useAsk } from "./use";
 import { faultWords, huntingWords, isWord, list, said, t } from "./words";
 
@@ -21,7 +21,7 @@ interface Alarm { utime: number; kind: string; job: string; fault: string; place
 function Now(): JSX.Element {
 	const s = link.state, w = faultWords(s.fault);
 	const others = s.faults.split(" ").filter((f) => f && f !== s.fault);
-	if (s.fault === "none") return <Card title={t("alarms.now")}><p class="calm">{t("alarms.none")}</p></Card>;
+	if (s.fault === "none") return <Card title={t("alarms.now")}><p class="calm">{s.daemon === "ok" && link.connection === "open" ? t("alarms.none") : stateLine().why}</p></Card>;
 	return <Card title={t("alarms.now")} class="alarm-now">
 		<h3><span class="dot cross" aria-hidden="true" />{w.what} <code>{s.fault}</code></h3>
 		<dl><dt>{t("alarms.why")}</dt><dd>{w.why}</dd><dt>{t("alarms.clear")}</dt><dd>{w.clear}</dd>

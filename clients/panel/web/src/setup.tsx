@@ -154,7 +154,7 @@ function ProbeForm(p: { probe: Probe }): JSX.Element {
 	const own = !!p.probe.electrode, target = own ? `T${link.state.electrode}` : work;
 	const [now, look] = useBefore(target, own, p.probe.shows(v)), state = useOver(felt?.job ?? "", look);
 	const whole = isWhole(p.probe, v), words = whole ? [target, ...p.probe.words(v)] : [];
-	const why = !whole ? t("probe.bad") : own && !link.state.electrode ? t("touch.none") : link.state.loaded ? t("no.loaded") : whyNot("send");
+	const why = !whole ? t("probe.bad") : own && !link.state.electrode ? t("touch.none") : whyNot("jog") || whyNot("send");
 	const change = (key: string, text: string) => set({ ...v, [key]: text });
 	const run = async () => {
 		const a = await link.ask("offset", { text: words.join("\n") });
@@ -186,7 +186,7 @@ let lastLines: string[] = [];
 function MdiCard(): JSX.Element {
 	const [line, set] = useDraft("mdi", ""), [ran, run] = useDraft("mdi.ran", { job: "", line: "" });
 	const state = useOver(ran.job, () => undefined), text = line.trim();
-	const why = !text ? t("mdi.none") : link.state.loaded ? t("no.loaded") : whyNot("jog") || whyNot("send");
+	const why = !text ? t("mdi.none") : whyNot("jog") || whyNot("send");
 	const go = async () => {
 		const a = await link.ask("mdi", { text });
 		if (a.code !== 0) { say(a.reason === "connection" ? t("no.connection") : said(a.reason), true); return; }

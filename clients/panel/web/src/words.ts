@@ -66,7 +66,7 @@ export const en = {
 	"why.home": "Looks for the home of an axis.",
 	"why.probe": "Moves until the electrode meets the work.",
 	"why.absent": "edmd does not run on this host. Start it: systemctl start edmd.",
-	"why.lost": "The cycle stands still, or edmd is dead. The last known values are shown.",
+	"why.lost": "The cycle stands still, or edmd is dead. The last known values are shown. Use the machine's own emergency stop.",
 	"why.connection": "The page has lost the panel. What runs goes on; it tries again by itself. Until then use the machine's own emergency stop.",
 	"why.nojobs": "edmd-jobs does not answer. Hold, Stop and E-stop go to edmd itself, nothing else works; beside them use the machine's own emergency stop.",
 	"why.noway": "No command reaches the machine. Use its own emergency stop.",
