@@ -13,7 +13,7 @@ import st  # noqa: E402
 TEXT = (ROOT / "examples/edmd.st").read_text()
 VALUES = ("Current", "OnTime", "OffTime", "Voltage", "Servo")
 SCANS = 20000
-OWN = {v: 8 + i for i, v in enumerate(VALUES[:4])}
+OWN = {v: 8 + i for i, v in enumerate(VALUES)}
 NOT_GIVEN = 65535
 
 

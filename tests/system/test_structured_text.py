@@ -34,7 +34,7 @@ C200, 6, 8, 20, 180, 15, -1
 C100, 12, 20, 50, 120, 22.5, 1
 C300, 9, 20, -, -, 22.5, 1
 """
-OWN = {"OwnOffTime": 300, "OwnVoltage": 900}
+OWN = {"OwnOffTime": 300, "OwnVoltage": 900, "OwnServo": 200}
 VALUES = ("Current", "OnTime", "OffTime", "Voltage")
 JOB = b"G21 G90 F60\nC200 G1 X1\nT3 M6\nC100\nG1 X40\nM30\n"
 
@@ -151,6 +151,8 @@ def test_it_sets_the_generator_and_changes_the_electrode(shop):
 
 def test_what_a_condition_does_not_give_is_the_generators_own(shop):
     m, plc = shop
+    # Before the first job all of it is.
+    rig.until(lambda: plc.real == [0, 0, 300, 900, 200, 0, 0], 20)
     text = b"G21 G90 F60\nC300 G1 X40\nM30\n"
     rig.until(lambda: m.client.submit(text, "work").code == 0)
     rig.until(lambda: plc.real == [90, 200, 300, 900, 225, 0, 0], 20)

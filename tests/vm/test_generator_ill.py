@@ -15,7 +15,7 @@ import pytest
 from boot import GAP, HERE, Run, checked, machine
 
 SEED = int(os.environ.get("EDM_SEED", "45"))
-EVENTS = int(os.environ.get("EDM_EVENTS", "60"))
+EVENTS = int(os.environ.get("EDM_EVENTS", "40"))
 CUT_UM, CUTS, NEAR_UM = 20, 400, 3
 # silent_ms, and what it takes to end sparks: until then a loss may be unknown.
 UNKNOWN_S = 0.2 + 0.05
@@ -25,8 +25,8 @@ NOTHING = (0,) * 6
 OWN = 250
 CONDS = {"C200": (60, 80, 200, 180, 150), "C201": (155, 500, 1000, 120, 225),
          "C202": (90, 80, 200, 90, OWN)}
-WORDS = ("M3", "M4", "M5", "M3\nM4", "M4\nM3", "M5\nM4", "M4\nM5",
-         "M5\nM3\nM5\nM4", "T84", "T85\nT84")
+WORDS = ("M3", "M4", "M5", "T84", "T85\nT84", "G4 P0.02")
+CHANGE_EACH = 8
 
 ILL = GAP.replace("pump = 7\n", "") + """
 [generator]
@@ -58,11 +58,14 @@ def cuts(seed):
     text, has, power, negative = ["G21 G90 T84"], [], True, 0
     for i in range(CUTS):
         cond = rnd.choice(list(CONDS))
-        words = rnd.choice(WORDS) if rnd.random() < 0.5 else ""
-        for w in words.split():
+        words = rnd.sample(WORDS, rnd.choice((0, 0, 1, 2, 3, 4)))
+        if i % CHANGE_EACH == 0:        # a program has 63 at most
+            words.append(f"T{1 + i // CHANGE_EACH % 2} M6")
+            rnd.shuffle(words)
+        for w in words:
             power = {"M3": True, "M4": True, "M5": False}.get(w, power)
             negative = {"M3": 0, "M4": 1}.get(w, negative)
-        text += [cond] + words.split() + [
+        text += [cond] + words + [
             f"G1 X{(i + 1) * CUT_UM / 1000:.3f} F6"]
         has.append((*CONDS[cond], negative) if power else None)
     return "\n".join(text + ["M30", ""]), has
@@ -114,11 +117,13 @@ def walk(run, said):
     return all_of, um
 
 
-def of_place(has, um):
-    """What may be in force there; at a node, that of either side."""
+def of_place(has, um, peaks):
+    """What may be in force there; at a node, that of either side.  A person may
+    have set one of @peaks in it."""
     at = {min(max(um + d, 0) // CUT_UM, len(has) - 1)
           for d in (-NEAR_UM, 0, NEAR_UM)}
-    return [has[i] for i in at]
+    return [(peak, *has[i][1:]) for i in at if has[i]
+            for peak in (has[i][0], *peaks)]
 
 
 def had_during(had, begin, end):
@@ -135,6 +140,7 @@ def test_much_happened_to_it(run, said):
           f"{len(said['had'])} changes")
     assert len(said["did"]) == EVENTS
     assert len(sparks) > EVENTS / 2 and um > 200
+    assert {v[0] for _, v in said["had"]} & {peak for _, peak in said["sets"]}
 
 
 def test_each_spark_has_the_condition_of_its_place(run, said):
@@ -143,8 +149,9 @@ def test_each_spark_has_the_condition_of_its_place(run, said):
         since, values = had_during(said["had"], begin, end)[0]
         if values == NOTHING and begin - since < UNKNOWN_S:
             continue
+        peaks = {peak for t, peak in said["sets"] if t < end}
         for um in places:
-            assert values in of_place(has, um), (begin, um, values)
+            assert values in of_place(has, um, peaks), (begin, um, values)
 
 
 def test_nothing_changes_while_there_are_sparks_but_by_the_generator(run, said):

@@ -4,7 +4,8 @@
 The generator is a Modbus slave by the text of the protocol alone.  It takes what is
 written at once, has it only some time later, in the order of the writes, and tells
 in its input registers what it has.  edmd is killed, held, moved back, stopped by a
-switch, shorted, and the generator is switched off and on.  Prints JSON: what the
+switch, shorted, a person sets a current and takes it back, and the generator is
+switched off and on.  Prints JSON: what the
 generator had and when, and when edmd was killed, by CLOCK_MONOTONIC as the kernel's
 trace.
 """
@@ -107,7 +108,7 @@ class Bench:
     def __init__(self, folder, seed):
         self.folder, self.random = pathlib.Path(folder), random.Random(seed)
         self.slave = Slave(seed)
-        self.kills, self.did = [], []
+        self.kills, self.did, self.sets = [], [], []
         self.edmd = None
 
     def ctl(self, *words):
@@ -129,6 +130,8 @@ class Bench:
             if self.state() in ("approach", "erode", "travel", "retract"):
                 return True
             self.ctl("reset")
+            for n in "12":          # where it stands for an electrode
+                self.ctl("done", n)
             self.ctl("start")
             if '"done"' in self.ctl("--json", "jobs"):
                 return False
@@ -173,9 +176,22 @@ class Bench:
     def restart(self):
         self.slave.restart()
 
+    def set(self):
+        count = self.random.choice([31, 42])
+        self.sets.append((now(), count))
+        self.ctl("set", "peak_a", f"{count / 10}")
+
+    def set_in_hold(self):
+        self.ctl("hold")
+        self.set()
+
+    def default(self):
+        self.ctl("set", "peak_a", "default")
+
     def run(self, events):
         what = [self.kill, self.kill, self.hold, self.back, self.back,
-                self.short, self.estop, self.restart, self.restart]
+                self.short, self.estop, self.restart, self.restart,
+                self.set, self.set_in_hold, self.default]
         for _ in range(events):
             if not self.goes_on():
                 break
@@ -198,9 +214,13 @@ def main():
         if b.state():
             break
         time.sleep(0.05)
-    print(b.ctl("submit", folder + "/ill.ngc"), file=sys.stderr)
+    for n in "12":
+        print(b.ctl("electrode", "add", n, "name=rib"), file=sys.stderr)
+    if not b.ctl("submit", folder + "/ill.ngc"):
+        raise SystemExit("the job was not taken")
     b.run(events)
-    json.dump({"had": b.slave.log, "kills": b.kills, "did": b.did},
+    json.dump({"had": b.slave.log, "kills": b.kills, "did": b.did,
+               "sets": b.sets},
               sys.stdout)
 
 
