@@ -13,19 +13,14 @@ static bool same(double a, double b)
 
 void asking_init(struct asking *a)
 {
-	*a = (struct asking) { .in_force = true };
+	*a = (struct asking) { .in_force = true, .anew = true };
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		a->now[i] = a->place[i] = a->hand[i] = (double)NAN;
 }
 
-static uint32_t tried_fields(const struct asking *a)
-{
-	return a->trial.fields | a->leased.fields;
-}
-
 static bool is_tried(const struct asking *a, int i)
 {
-	return tried_fields(a) >> i & 1;
+	return (a->trial.fields | a->leased.fields) >> i & 1;
 }
 
 static double tried(const struct asking *a, int i)
@@ -66,12 +61,12 @@ static double has_by_now(const struct cycle *c, int i)
 	       process_nearest(d, i, says->told[i]) : (double)NAN;
 }
 
-/* Before @value is asked for.  Where all is free, nothing is kept. */
+/* Before @value is asked for. */
 static void lend(struct cycle *c, int i, double value)
 {
 	struct asking *a = &c->asking;
 
-	if (!c->config.asking.limited || is_lent(a, i) || isnan(value))
+	if (is_lent(a, i) || isnan(value))
 		return;
 	a->lent |= 1u << i;
 	a->before[i] = has_by_now(c, i);
@@ -111,6 +106,7 @@ bool asking_try(struct cycle *c, uint32_t field, double value, bool leased)
 	const struct process_delivers *d;
 	struct asking *a = &c->asking;
 
+	a->anew = true;
 	if (field >= INTERP_NGENERATOR) {
 		a->trial.fields = a->leased.fields = 0;
 		return isnan(value);
@@ -129,8 +125,10 @@ bool asking_try(struct cycle *c, uint32_t field, double value, bool leased)
 static void lease_step(struct asking *a)
 {
 	a->lease -= a->lease > 0;
-	if (a->lease == 0)
-		a->leased.fields = 0;
+	if (a->lease > 0 || !a->leased.fields)
+		return;
+	a->leased.fields = 0;
+	a->anew = true;
 }
 
 /* -- What a person sets ---------------------------------------------------- */
@@ -259,18 +257,23 @@ static bool is_confirmed(const struct cycle *c, uint32_t version)
 static bool ask_freely(struct cycle *c)
 {
 	struct asking *a = &c->asking;
-	double now[INTERP_NGENERATOR];
+	const double off_us = arcing_off_us(c);
 
-	memcpy(now, c->out.pulse, sizeof(now));
-	now[INTERP_TECH_OFF_US] = arcing_off_us(c);
-	for (int i = 0; tried_fields(a) && i < INTERP_NGENERATOR; i++)
-		now[i] = is_tried(a, i) ? tried(a, i) : now[i];
-	if (memcmp(now, a->now, sizeof(now)) == 0)
+	if (!a->anew && same(off_us, a->arcing_off_us) &&
+	    memcmp(a->place, c->out.pulse, sizeof(a->place)) == 0)
 		return false;
+	memcpy(a->place, c->out.pulse, sizeof(a->place));
+	a->arcing_off_us = off_us;
+	a->anew = false;
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
-		if (same(a->now[i], now[i]))
+		const double want = asked_for(c, i);
+		const double now = i == INTERP_TECH_OFF_US ?
+				   against_arcs(c, want) : want;
+
+		if (same(a->now[i], now))
 			continue;
-		a->now[i] = now[i];
+		lend(c, i, now);
+		a->now[i] = now;
 		a->version++;
 		a->age = 0;
 	}
@@ -295,10 +298,13 @@ static void give_back(struct cycle *c)
 {
 	struct asking *a = &c->asking;
 
-	for (int i = 0; a->has && !c->loaded && i < INTERP_NGENERATOR; i++)
+	if (!a->has || c->loaded || !a->lent)
+		return;
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		if (isnan(c->out.pulse[i]) && !is_tried(a, i) &&
 		    !is_unknown(c, i))
 			a->lent &= ~(1u << i);
+	a->anew = true;
 }
 
 void asking_step(struct cycle *c, const struct io_inputs *in)
@@ -309,10 +315,12 @@ void asking_step(struct cycle *c, const struct io_inputs *in)
 	a->age++;
 	lease_step(a);
 	if (!c->config.asking.limited) {
-		if (ask_freely(c) || !a->has) {
-			a->has = is_confirmed(c, a->version);
+		const bool stays = !ask_freely(c) && a->has;
+
+		a->has = is_confirmed(c, a->version);
+		if (!stays || !a->has)
 			bound_ignition(c);
-		}
+		give_back(c);
 		return;
 	}
 	hear_hand(c);

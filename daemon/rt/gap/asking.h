@@ -50,6 +50,9 @@ struct asking {
 	double now[INTERP_NGENERATOR];	/* asked; NAN: its own setting */
 	double place[INTERP_NGENERATOR];	/* the same without steps
 						 * against arcs */
+	double arcing_off_us;		/* with them; and ... */
+	bool anew;			/* ... look, though both are as before:
+					 * where all is in force at once */
 	uint32_t version;		/* of `now` */
 	uint32_t needed;		/* of `place` */
 	uint64_t age;			/* periods since `needed` */
