@@ -10,7 +10,6 @@
  */
 #include "speed/looks.h"
 #include "speed/pass.h"
-#include "speed/sections.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -19,6 +18,9 @@
 /* Fewer need no time.  The piece of a curve between two cusps may have some
  * points and next to no length. */
 #define MANY_POINTS	64
+
+/* Lines that are shorter than so many corners stand for a curve. */
+#define SHORT_CORNERS	100
 
 /* Of what looks at a curve allow, between them. */
 #define LOOKED		0.98f
@@ -328,7 +330,7 @@ int interp_limits_write(const struct interp_limits *l,
 {
 	struct limits w = {
 		.pass = { .p = p, .segs = segs, .end = p->head->nsegs - 1,
-			  .short_mm = SECTIONS_SHORT * l->corner_mm },
+			  .short_mm = SHORT_CORNERS * l->corner_mm },
 		.points_per_s = l->points_per_s,
 		.v2 = malloc(p->head->nsegs * sizeof(float)),
 	};

@@ -32,6 +32,10 @@ void pass_levels(struct pass *w);
  * becomes so many times as much, or so small a part. */
 #define PASS_SIDE	2
 
+/* A node is slow if it is passed no faster than this share of what its sides
+ * come to. */
+#define PASS_SLOW	0.5
+
 /**
  * pass_stands() - flag the nodes at which a move stands, because the axes allow
  * much less on one side: at first there are stands where the length of the path

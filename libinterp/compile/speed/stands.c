@@ -11,8 +11,8 @@
  *
  * A program has sides.  A side ends at a slow node, where what is allowed
  * becomes half or twice as much, and where the length of the path passes to
- * other axes.  At first a move stands between any two sides that differ.  Then
- * the stands go, one after the other, that do not save time.
+ * other axes.  At first a move stands between any two sides of which one is
+ * harder.  Then the stands go, one after the other, that do not save time.
  */
 #include "speed/pass.h"
 
@@ -20,9 +20,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A node is slow if it is passed no faster than this share of what its sides
- * come to. */
-#define SLOW		0.5
+/* One side is harder than the other if it may have more than so many times its
+ * acceleration or jerk. */
+#define SOFTER		1.25
 
 /* -- Sides ----------------------------------------------------------------- */
 
@@ -58,11 +58,16 @@ static bool is_one_side(const struct side *k)
 	       k->j_most <= PASS_SIDE * k->j_least;
 }
 
+static bool is_softer(double a, double b)
+{
+	return a > SOFTER * b || b > SOFTER * a;
+}
+
 static bool is_apart(const struct side *a, const struct side *b)
 {
 	return a->last < UINT32_MAX &&
-	       (b->begins_part || a->a_least != b->a_least ||
-		a->j_least != b->j_least);
+	       (b->begins_part || is_softer(a->a_least, b->a_least) ||
+		is_softer(a->j_least, b->j_least));
 }
 
 /* What a node is slow beside: the ceiling of a segment, but no more than a
@@ -85,8 +90,8 @@ static bool is_slow(const struct pass *w, uint32_t last, uint32_t i)
 	const double node = (double)s[last].node_mm_s;
 	const double before = last > 0 ? (double)s[last - 1].node_mm_s : 0;
 
-	return node < SLOW * beside_mm_s(w, last, before) &&
-	       node < SLOW * beside_mm_s(w, i, (double)s[i].node_mm_s);
+	return node < PASS_SLOW * beside_mm_s(w, last, before) &&
+	       node < PASS_SLOW * beside_mm_s(w, i, (double)s[i].node_mm_s);
 }
 
 /* Where the length passes to other axes, there is a stand already. */
