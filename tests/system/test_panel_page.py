@@ -808,26 +808,6 @@ def test_a_press_is_for_the_job_it_was_begun_for(p, page):
     client.job_where("second", "done", 20)
 
 
-def test_a_press_is_for_the_stand_it_was_begun_for(p, page):
-    """Somebody else goes on, and it stands again, while a finger is on the key."""
-    client = p.machine.client
-    end_job(page, p)
-    assert client.submit(b"G21 G90 F600\nG0 Z1\nM0 (one)\nG0 Z2\nM0 (two)\nM30\n",
-                         "stops").code == 0
-    key, why = page.locator("#start"), page.locator(".head .state p")
-    expect(why).to_contain_text("one")
-    page.evaluate(SECOND)
-    key.hover()
-    page.mouse.down()
-    expect(key).to_have_class(re.compile("pressed"))
-    assert client.ask("start").code == 0
-    expect(why).to_contain_text("two")
-    assert page.evaluate("window.over()") == 0
-    page.mouse.up()
-    assert client.status().line == 5
-    end_job(page, p)
-
-
 def test_a_form_shows_what_it_will_do_beside_its_key(p, page):
     """On a small panel nothing that says where the axis goes is out of sight."""
     end_job(page, p)

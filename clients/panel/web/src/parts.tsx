@@ -33,14 +33,8 @@ export function Key(p: KeyProps): JSX.Element {
 	</button>;
 }
 
-/* Which job is there, and what it asks for. */
-function asked(): string {
-	const s = link.state;
-	return [s.job, ...s.stand ? [s.stand, s.standOf, s.line] : []].join(" ");
-}
-
 /** Acts when it was pressed for a second, by finger, mouse or keyboard.  A press is for
- *  the job and the stand that were there when it began: another is not begun by it. */
+ *  the job that was there when it began: another is not begun by it. */
 export function PressKey(p: KeyProps): JSX.Element {
 	const [since, set] = useState(0);
 	const timer = useRef<number>(0);
@@ -65,7 +59,7 @@ export function PressKey(p: KeyProps): JSX.Element {
 	useEffect(() => {
 		window.addEventListener("blur", end);
 		return () => { window.removeEventListener("blur", end); end(); };
-	}, [asked()]);
+	}, [link.state.job]);
 	const key = (e: KeyboardEvent, go: () => void) => {
 		if (e.key !== "Enter" && e.key !== " ") return;
 		e.preventDefault();
