@@ -38,7 +38,7 @@ static struct made compiled(int text, enum interp_strategy how)
 	};
 	const struct interp_build_options bo = {
 		.machine = &m, .strategy = how, .tolerance_milli = 2000,
-		.fit_mm = text % 4 ? 0 : 0.01, .period_s = 1e-3,
+		.fit_mm = text % 4 ? 0 : 0.01,
 	};
 	const struct interp_text t = {
 		script.at, (size_t)script.n, interp_dialect_by_name(dialect),
