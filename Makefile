@@ -553,7 +553,9 @@ check-vm:
 	@$(MAKE) --no-print-directory vm
 	@EDM_BUILD=$(B) $(NETNS) .venv/bin/pytest -q tests/vm
 
-units: $(UNIT_X) $(PEER_X) $(B)/loopback.so
+# The fuzzers' own objects too: who changes a type hears it here, not at the end.
+FUZZ_O	= $(patsubst %.c,$(B)/%.o,$(wildcard tests/fuzz/*.c))
+units: $(UNIT_X) $(PEER_X) $(B)/loopback.so $(FUZZ_O)
 
 # Tests run in a network of their own; where there is none, by loopback.
 NETNS	= EDM_LOOPBACK='$(abspath $(B))' tests/netns

@@ -74,8 +74,8 @@ static void change(uint8_t *block, size_t bytes, const uint8_t *data,
 
 	for (size_t i = 0; i + 5 <= size; i += 5) {
 		memcpy(&at, data + i, sizeof(at));
-		at %= i & 1 || bytes < sizeof(struct interp_program_head) ?
-		      bytes : sizeof(struct interp_program_head);
+		at %= (uint32_t)(i & 1 || bytes < sizeof(struct interp_program_head) ?
+				 bytes : sizeof(struct interp_program_head));
 		block[at] = data[i + 4];
 	}
 }
