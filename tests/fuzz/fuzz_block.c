@@ -70,12 +70,12 @@ static const struct made *program(uint8_t text, uint8_t how)
 static void change(uint8_t *block, size_t bytes, const uint8_t *data,
 		   size_t size)
 {
+	const size_t head = sizeof(struct interp_program_head);
 	uint32_t at;
 
 	for (size_t i = 0; i + 5 <= size; i += 5) {
 		memcpy(&at, data + i, sizeof(at));
-		at %= (uint32_t)(i & 1 || bytes < sizeof(struct interp_program_head) ?
-				 bytes : sizeof(struct interp_program_head));
+		at %= (uint32_t)(i & 1 || bytes < head ? bytes : head);
 		block[at] = data[i + 4];
 	}
 }

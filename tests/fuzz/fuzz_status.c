@@ -29,8 +29,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	for (size_t i = 0; i + 5 <= size; i += 5) {
 		memcpy(&at, data + i, sizeof(at));
 		/* Half of them where the counts and stamps are. */
-		at %= (uint32_t)(i & 1 ? sizeof(*s) :
-				 sizeof(*s) - sizeof(s->trace) - sizeof(s->event));
+		at %= (uint32_t)(sizeof(*s) - (i & 1 ? 0 : sizeof(s->trace) +
+							   sizeof(s->event)));
 		((uint8_t *)s)[at] = data[i + 4];
 	}
 	shm_snapshot(s, &snap);
