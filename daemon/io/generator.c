@@ -77,7 +77,8 @@ static void put_text(const struct generator_note *n, const char *words,
 		break;
 	case GENERATOR_UNCOUNTED:
 		snprintf(buf, size, n->field == PROCESS_FAULT ?
-			 "generator: it counts no pulses, for share_stale_ms" :
+			 "generator: its sums of pulses stand still or jump, "
+			 "for share_stale_ms" :
 			 "generator: it does not tell its %s, for "
 			 "share_stale_ms", name);
 		break;
@@ -189,11 +190,17 @@ void generator_refused(struct generator *g, int field, int exception)
 		.kind = GENERATOR_REFUSES, .field = field, .code = exception });
 }
 
+/* What was asked last is still on its way to it. */
+static bool is_on_its_way(const struct generator *g)
+{
+	return g->takes && g->taken_version != g->asked;
+}
+
 /* The first field that it tells otherwise, or that waits for its answer; -1:
  * there is none. */
 static int odd_one(const struct generator *g)
 {
-	const bool waits = g->takes && g->taken_version != g->asked;
+	const bool waits = is_on_its_way(g);
 
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		if (!agrees(g, i))
@@ -264,7 +271,7 @@ static void look(struct generator *g)
 			.code = (int)g->heard[PROCESS_FAULT] });
 	if (lost >= 0)
 		trouble_of(g, GENERATOR_DIFFERS, lost);
-	g->settling -= g->settling > 0;
+	g->settling -= g->settling > 0 && !is_on_its_way(g);
 	if (odd < 0 && !silent && !g->settling) {
 		g->had = UINT32_MAX;
 		g->says.in_force = g->asked;

@@ -65,7 +65,7 @@ static void take(struct generator *g)
 }
 
 /* The first sum that it does not tell any more; PROCESS_FAULT: it tells all,
- * and they stand still. */
+ * and they stand still or jump. */
 static int missing(const struct generator *g)
 {
 	for (int i = 0; i < GENERATOR_NCOUNTS; i++)

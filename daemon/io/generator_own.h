@@ -71,8 +71,8 @@ struct generator {
 	uint32_t refresh, silent, confirm, settle;	/* periods */
 	struct io_generator says;
 	uint32_t waited;		/* periods for its word */
-	uint32_t settling;		/* periods until what it does not tell
-					 * is there */
+	uint32_t settling;		/* periods, once it has taken what was
+					 * asked, until that is there */
 	uint32_t up;			/* periods since it was opened */
 	bool came;			/* it has told all that it tells */
 	uint32_t had;			/* a bit for each value that it had as

@@ -266,15 +266,10 @@ static void give(struct cycle *c, struct io_outputs *out)
 	c->out.home = manual_in_phase(c, HOME_BY_DRIVE);
 	c->out.latch = manual_in_phase(c, HOME_INDEX);
 	if (c->loaded) {
-		const struct interp_cond *cond =
-			&c->cursor.p.conds[c->cursor.seg.cond];
-
 		c->out.place_mm = interp_cursor_place_mm(&c->cursor);
 		c->out.off_path_mm = c->escape.way_mm;
 		c->out.rapid = c->state == STATE_TRAVEL ||
 			       c->state == STATE_PROBE;
-		c->out.cond_letter = cond->letter;
-		c->out.cond_number = cond->number;
 	}
 	if (moves_by_will(c))
 		c->comp.resting = false;

@@ -60,6 +60,7 @@ QUICK_JOB = b"G21 G90\nG1 X0.2 F600\nG1 X0\nM30\n"
 # up is this much longer than on an idle machine, because tests also run beside
 # others on a busy one.
 PATIENCE = 6
+NOT_DONE = "did not take it in time", "edmd is lost"
 
 
 def until(what, timeout=5.0, step=0.01):
@@ -470,8 +471,8 @@ class Machine:
         return (self.folder / f"{program}.log").read_text()
 
     def ctl(self, *args, timeout=120, program=BUILD / "edmctl", **more):
-        """On a busy host services that run answer late, and what edmd did not
-        take in time was not done: it is asked again."""
+        """On a busy host services that run answer late, or a cycle comes late,
+        and what edmd did not take in time was not done: it is asked again."""
         runs = [x is not None and x.poll() is None
                 for x in (self.jobs, self.edmd)]
         patience = ["--timeout", str(3 * PATIENCE)] if runs[0] else []
@@ -480,8 +481,9 @@ class Machine:
                 [str(program), "--machine", self.name, *patience, *args],
                 capture_output=True, text=True, timeout=timeout, **more,
             )
-            if not runs[1] or "did not take it in time" not in p.stderr:
+            if not runs[1] or not any(w in p.stderr for w in NOT_DONE):
                 break
+            time.sleep(0.2)
         return p
 
 

@@ -97,6 +97,16 @@ def test_a_set_out_of_range_is_refused_with_the_range(shop):
     assert changes(c) == [("condition", None, "C120")]
 
 
+def test_a_job_without_a_condition_has_none_of_the_one_before(shop):
+    c = shop.client
+    for name, condition in ("a", b"C120 "), ("b", b""):
+        text = b"G21 G90\n" + condition + b"G1 X0.5 F600\nX0\nM30\n"
+        assert c.submit(text, name).code == 0
+        c.job_where(name, "done")
+    assert changes(c, "a") == [("condition", None, "C120")]
+    assert changes(c, "b") == []
+
+
 def test_a_value_below_0_is_a_value_and_no_option(shop):
     c = running(shop)
     assert shop.ctl("set", "polarity", "-1").returncode == 0

@@ -223,13 +223,12 @@ static void a_set_belongs_to_its_condition(void **state)
 }
 
 /* Who sets a value while it lifts means what is cut, and not where the lift has
- * come to. */
-static void a_set_in_a_retract_is_for_the_cut(void **state)
+ * come to; also where the machine is @held there. */
+static void check_set_in_a_retract(bool held)
 {
 	const struct conds t = usual_conds();
 	struct rig r;
 
-	(void)state;
 	rig_conds(&r, &t);
 	cut_until(&r, 4.2);
 	check_c2(&r);
@@ -237,12 +236,27 @@ static void a_set_in_a_retract_is_for_the_cut(void **state)
 		step(&r, SHORTED_V);
 	assert_int_equal(r.c.state, STATE_RETRACT);
 	check_c1(&r);
+	if (held) {
+		assert_int_equal(tell(&r, CYCLE_HOLD), ANSWER_DONE);
+		until(&r, STATE_HOLD, OPEN_V, 1000);
+		for (int i = 0; i < 100; i++)
+			step(&r, OPEN_V);
+	}
 	assert_int_equal(set(&r, INTERP_TECH_SERVO_V, 33), ANSWER_DONE);
 	assert_true(conditions_value(&r.c, INTERP_TECH_SERVO_V) == 33);
 	check_c1(&r);
+	if (held)
+		assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
 	cut_until(&r, 4.2);
 	assert_true(r.c.gap.servo_v == 33);
 	rig_free(&r);
+}
+
+static void a_set_in_a_retract_is_for_the_cut(void **state)
+{
+	(void)state;
+	check_set_in_a_retract(false);
+	check_set_in_a_retract(true);
 }
 
 /* A change of it is written down with the value that it replaces. */

@@ -261,7 +261,7 @@ static void counts_that_stop_are_none_in_share_stale_ms(void **state)
 		period(&b);
 		assert_false(b.in.shares_valid || b.in.shares_due);
 		assert_true(log_has(&b, silent ? "does not tell its opens" :
-						 "it counts no pulses"));
+						 "stand still or jump"));
 		bed_unmake(&b);
 	}
 }

@@ -379,6 +379,80 @@ static void what_one_without_function_6_refuses_is_told_as_it_is(void **state)
 			       "exception 3, no such value"));
 }
 
+/* -- Values that are asked for one behind the other ------------------------ */
+
+static void ask_peak(double a)
+{
+	shop.r.out.pulse[INTERP_TECH_PEAK_A] = a;
+	shop.r.out.asked++;
+}
+
+static bool is_in_force(void)
+{
+	return shop.r.in.generator.in_force == shop.r.out.asked;
+}
+
+static uint16_t peak_register(void)
+{
+	uint16_t x;
+
+	pthread_mutex_lock(&slave.lock);
+	x = slave.map->tab_registers[0];
+	pthread_mutex_unlock(&slave.lock);
+	return x;
+}
+
+static void until_peak_is(uint16_t tenths)
+{
+	for (int i = 0; i < TURNS_MOST && peak_register() != tenths; i++)
+		usleep(TURN_US);
+	assert_int_equal(peak_register(), tenths);
+}
+
+static void period(void)
+{
+	shop.axes.read(shop.axes.self, &shop.r.in);
+	shop.axes.write(shop.axes.self, &shop.r.out);
+}
+
+/* It tells what it has, and has a value some time after it was written.  So it
+ * tells 6 A while 11 A is on its way, and still when 6 A is asked for anew. */
+static void settle_ms_is_from_when_it_was_taken(void **state)
+{
+	const int settle = 200;		/* periods */
+	struct generator *g;
+	int n = 0;
+
+	(void)state;
+	shop_open_with(&shop, 1, "told_peak_a = input 0 scale 0.1\n"
+		       "settle_ms = 200\n");
+	slave.map->tab_input_registers[0] = 60;
+	shop.r.out = (struct io_outputs) { .power = false };
+	io_pulse_own(&shop.r.out);
+	ask_peak(6);
+	for (int i = 0; i < TURNS_MOST && !is_in_force(); i++, usleep(TURN_US))
+		period();
+	assert_true(is_in_force());
+	ask_peak(11);
+	period();
+	until_peak_is(110);
+	ask_peak(6);
+	/* All periods of settle_ms pass while it waits for the slave. */
+	pthread_mutex_lock(&slave.lock);
+	for (int i = 0; i < 2 * settle; i++)
+		period();
+	pthread_mutex_unlock(&slave.lock);
+	g = shop.axes.self;
+	for (int i = 0; i < TURNS_MOST && g->taken_version != g->asked; i++) {
+		assert_false(is_in_force());
+		usleep(TURN_US);
+		period();
+	}
+	for (; n < TURNS_MOST && !is_in_force(); n++)
+		period();
+	assert_in_range(n, settle - 1, settle + 1);
+}
+
 /* -- Counts ---------------------------------------------------------------- */
 
 #define STALE	100			/* periods */
@@ -410,12 +484,6 @@ static void count(const uint32_t sum[GENERATOR_NCOUNTS])
 		to[2 * i + (i != 1)] = (uint16_t)sum[i];
 	}
 	pthread_mutex_unlock(&slave.lock);
-}
-
-static void period(void)
-{
-	shop.axes.read(shop.axes.self, &shop.r.in);
-	shop.axes.write(shop.axes.self, &shop.r.out);
 }
 
 /* Three requests are an exchange: one that has begun by now, a whole one, and
@@ -499,7 +567,7 @@ static void counts_that_stand_or_are_silent_are_none(void **state)
 		assert_false(shop.r.in.shares_valid || shop.r.in.shares_due);
 		assert_true(shop.axes.note(shop.axes.self, text, sizeof(text)));
 		assert_non_null(strstr(text, silent ? "does not tell its opens"
-						    : "counts no pulses"));
+						    : "stand still or jump"));
 	}
 }
 
@@ -515,6 +583,7 @@ int main(void)
 		WITH_SHOP(what_it_does_not_tell_may_be_lost_behind_a_cut_link),
 		WITH_SHOP(a_link_that_is_cut_is_no_fault_by_itself),
 		WITH_SHOP(one_without_function_6_is_written_by_16),
+		WITH_SHOP(settle_ms_is_from_when_it_was_taken),
 		WITH_SHOP(what_one_without_function_6_refuses_is_told_as_it_is),
 		WITH_SHOP(counts_become_shares_over_the_ends_of_registers),
 		WITH_SHOP(counts_that_stand_or_are_silent_are_none),

@@ -107,6 +107,8 @@ static bool apply(struct cycle *c, uint16_t cond)
 	if (!fits(c, &t))
 		return false;
 	c->conditions.cond = cond;
+	c->out.cond_letter = c->cursor.p.conds[cond].letter;
+	c->out.cond_number = c->cursor.p.conds[cond].number;
 	put(c, &t);
 	return true;
 }
@@ -159,13 +161,20 @@ static uint16_t cond_here(const struct cycle *c)
 	       ahead.kind < INTERP_BEGIN ? ahead.cond : here->cond;
 }
 
+/* Jumps, retracts, and whoever is held in one, are behind it. */
+static bool is_at_the_front(const struct cycle *c)
+{
+	return interp_cursor_place_mm(&c->cursor) >=
+	       c->far_mm - MOVER_ONTO_MM;
+}
+
 bool conditions_follow(struct cycle *c)
 {
 	const uint16_t cond = cond_here(c);
 
 	if (hear_program(c))
 		put_polarity(c);
-	if (c->state != STATE_JUMP && c->state != STATE_RETRACT) {
+	if (is_at_the_front(c)) {
 		c->conditions.of_cut = cond;
 		c->conditions.said_of_cut = c->conditions.said;
 	}

@@ -38,8 +38,8 @@ struct conditions {
 					 * ... */
 	uint32_t said;			/* ... the last M3 or M4, enum
 					 * interp_aux; 0: none */
-	uint16_t of_cut;		/* of where it last did not go back,
-					 * ... */
+	uint16_t of_cut;		/* of where it last was at the farthest
+					 * place, ... */
 	uint32_t said_of_cut;		/* ... and what was said there */
 	uint32_t nsets;
 	struct conditions_set set[CONDITIONS_SETS_MAX];
@@ -61,8 +61,9 @@ bool conditions_begin(struct cycle *c);
 bool conditions_follow(struct cycle *c);
 
 /**
- * conditions_set() - in the condition at this place; in a jump or a retract, in
- * that of the cut which it came from.  @value NAN takes a set back.
+ * conditions_set() - in the condition at the farthest place: what is set in a
+ * jump, or while it is held in one, is for the cut.  @value NAN takes a set
+ * back.
  */
 enum conditions_result conditions_set(struct cycle *c, uint32_t field,
 				      double value);
