@@ -411,7 +411,15 @@ WEB	:= clients/panel/web
 WEB_SRC	:= $(wildcard $(WEB)/src/* $(WEB)/public/* $(WEB)/*.json $(WEB)/*.js \
 	   $(WEB)/*.mjs $(WEB)/index.html $(WEB)/.npmrc)
 
-panel: $(B)/panel.stamp
+panel: $(B)/panel.stamp $(B)/nodesets.stamp
+
+# Of the OPC Foundation, for edm-gateway: from the same lock file.
+NODESETS := $(patsubst %,Opc.Ua.%.NodeSet2.xml,Di IA Machinery MachineTool)
+$(B)/nodesets.stamp: $(B)/web/node_modules.stamp
+	$(Q)mkdir -p $(B)/nodesets
+	$(Q)cd $(B)/web/node_modules/node-opcua-nodesets/nodesets && \
+		cp $(NODESETS) '$(abspath $(B))/nodesets'
+	@touch $@
 
 $(B)/web/node_modules.stamp: $(WEB)/package.json $(WEB)/package-lock.json
 	@tests/setup panel
@@ -886,6 +894,9 @@ install: all panel
 		$(BELOW)/share/doc/edmd
 	$(Q)install -m 644 $(EXAMPLES) $(BELOW)/share/edmd/examples
 	$(Q)install -m 644 $(PAPERS) $(BELOW)/share/doc/edmd
+	$(Q)install -d $(BELOW)/share/edmd/nodesets
+	$(Q)install -m 644 $(NODESETS:%=$(B)/nodesets/%) \
+		$(BELOW)/share/edmd/nodesets
 	$(Q)install -d $(BELOW)/share/edmd/dialects
 	$(Q)install -m 644 $(DIALECT_FILES) $(BELOW)/share/edmd/dialects
 	$(Q)cd $(BELOW)/share && sha256sum $(addprefix edmd/,$(notdir $(SHARED)) \
@@ -928,7 +939,7 @@ uninstall:
 		$(INTO)/usr/lib/udev/rules.d/60-edmd.rules \
 		$(patsubst docs/man/%,$(BELOW)/share/man/man1/%,$(wildcard docs/man/*.1)) \
 		$(patsubst docs/man/%,$(BELOW)/share/man/man8/%,$(wildcard docs/man/*.8))
-	$(Q)rm -rf $(BELOW)/share/edmd/panel
+	$(Q)rm -rf $(BELOW)/share/edmd/panel $(BELOW)/share/edmd/nodesets
 	$(Q)cd $(BELOW)/share 2>/dev/null || exit 0; \
 	LC_ALL=C sha256sum -c edmd/installed 2>/dev/null | \
 		sed -n 's/: OK$$//p' | xargs rm -f edmd/installed; \
