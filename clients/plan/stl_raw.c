@@ -214,7 +214,8 @@ static int read_text(struct source *s, struct stl_raw *raw)
 
 	if (memchr(s->text, '\0', s->bytes))
 		return refuse_length(s);
-	s->at = s->text;
+	/* Some programs begin a text with a byte order mark. */
+	s->at = s->text + (strncmp(s->text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0);
 	s->line = 1;
 	while (err == 0) {
 		if (take_word(s, within ? "endsolid" : "solid")) {

@@ -139,8 +139,11 @@ def test_a_start_that_is_wrong_is_said(tmp_path, start, say):
     assert r.returncode == 1 and say in r.stdout
 
 
-def test_text_and_binary_are_one(tmp_path):
-    write_text(tmp_path / "t.stl", BESIDE)
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+def test_text_and_binary_are_one(tmp_path, mark):
+    text = tmp_path / "t.stl"
+    write_text(text, BESIDE)
+    text.write_text(mark + text.read_text(), encoding="utf-8")
     r = check_boxes(tmp_path, BESIDE, TOOL)
     s = plan("--part", tmp_path / "t.stl", "--electrode",
              tmp_path / "electrode.stl", "--clearance", "0.1", "--chord", "0",
