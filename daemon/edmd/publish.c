@@ -323,6 +323,9 @@ static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
 	s->retracts = t->retracts;
 	s->hunts = t->hunts;
 	s->in_row = c->retract.in_row;
+	s->cut_cycles = t->cut_cycles;
+	s->moved_cycles = t->moved_cycles;
+	s->other_cycles = t->other_cycles;
 	s->jumps = t->jumps;
 	s->shorts = t->shorts;
 	s->arcs = t->arcs;

@@ -35,6 +35,16 @@ static void add(double to[], const double s[], double times)
 		to[i] += s[i] * times;
 }
 
+/* Positioning, whatever is removed. */
+struct moved {
+	double s[FORECAST_REMOVALS];
+};
+
+static struct moved moved(const struct forecast_part *p)
+{
+	return (struct moved) { { p->moved_s, p->moved_s, p->moved_s } };
+}
+
 int eta_give(struct eta *l, struct forecast *of, uint32_t n)
 {
 	const struct forecast *f = &l->forecast;
@@ -46,15 +56,19 @@ int eta_give(struct eta *l, struct forecast *of, uint32_t n)
 	l->least_s = INFINITY;
 	if (!f->nparts)
 		return 0;
-	l->cond = calloc(f->nconds, sizeof(*l->cond));
+	l->cond = calloc(f->nconds + 1, sizeof(*l->cond));
 	if (!l->cond) {
 		eta_fini(l);
 		l->n = n;
 		return -ENOMEM;
 	}
-	for (uint32_t i = 0; i < f->nparts; i++)
-		add(l->cond[f->part[i].cond].all_s, f->part[i].cut_s, 1);
-	for (uint32_t i = 0; i < f->nconds; i++)
+	for (uint32_t i = 0; i < f->nparts; i++) {
+		const struct forecast_part *p = &f->part[i];
+
+		add(l->cond[p->cond].all_s, p->cut_s, 1);
+		add(l->cond[f->nconds].all_s, moved(p).s, 1);
+	}
+	for (uint32_t i = 0; i <= f->nconds; i++)
 		add(l->cond[i].left_s, l->cond[i].all_s, 1);
 	return 0;
 }
@@ -77,63 +91,74 @@ static double learnt(const struct eta_cond *c)
 
 /* -- What was cut ---------------------------------------------------------- */
 
-/* A gap that is deep behaves otherwise than one at the surface. */
-static double forget(const struct eta *l, double expected_s)
+/* A gap that is deep behaves otherwise than one at the surface; and an override
+ * may be another one now. */
+static double forget(const struct eta *l, uint32_t cond, double expected_s)
 {
-	return l->forecast.cut_s > 0 ?
-	       exp(-expected_s / (LATE_PART * l->forecast.cut_s)) : 1;
+	const double all_s = cond == l->forecast.nconds ? l->forecast.moved_s :
+							  l->forecast.cut_s;
+
+	return all_s > 0 ? exp(-expected_s / (LATE_PART * all_s)) : 1;
 }
 
-static void count(const struct eta *l, const struct forecast_part *p,
+static void count(struct eta *l, uint32_t cond, const double expected_s[],
 		  double passed_s)
 {
-	struct eta_cond *c = &l->cond[p->cond];
-	const double keep = forget(l, *p->cut_s);
+	struct eta_cond *c = &l->cond[cond];
+	const double keep = forget(l, cond, *expected_s);
 
-	c->expected_s += *p->cut_s;
+	c->expected_s += *expected_s;
 	c->passed_s += passed_s;
 	add(c->late_s, c->late_s, keep - 1);
-	add(c->late_s, p->cut_s, 1);
-	add(c->left_s, p->cut_s, -1);
+	add(c->late_s, expected_s, 1);
+	add(c->left_s, expected_s, -1);
 	c->late_passed_s = c->late_passed_s * keep + passed_s;
 }
 
-/* Parts up to @to are done: what they have taken is shared out to their
- * conditions as the forecast has it. */
-static void leave(struct eta *l, uint32_t to, double job_s)
+static struct eta_spent in_part(const struct eta *l)
+{
+	return (struct eta_spent) {
+		.cut_s = l->now.cut_s - l->entered.cut_s,
+		.moved_s = l->now.moved_s - l->entered.moved_s,
+		.other_s = l->now.other_s - l->entered.other_s,
+	};
+}
+
+/* Parts up to @to are done: what they have taken is shared out to them as the
+ * forecast has it. */
+static void leave(struct eta *l, uint32_t to)
 {
 	const struct forecast *f = &l->forecast;
-	double cut_s = 0, other_s = 0, passed_s;
+	const struct eta_spent took = in_part(l);
+	double cut_s = 0, moved_s = 0;
 
 	for (uint32_t i = l->at; i < to; i++) {
-		other_s += f->part[i].other_s;
 		cut_s += *f->part[i].cut_s * learnt(&l->cond[f->part[i].cond]);
+		moved_s += f->part[i].moved_s;
 	}
-	passed_s = fmax(0, job_s - l->entered_s - other_s);
-	for (uint32_t i = l->at; i < to && cut_s > 0; i++)
-		count(l, &f->part[i], passed_s * *f->part[i].cut_s *
-		      learnt(&l->cond[f->part[i].cond]) / cut_s);
+	for (uint32_t i = l->at; i < to; i++) {
+		const struct forecast_part *p = &f->part[i];
+
+		if (cut_s > 0)
+			count(l, p->cond, p->cut_s, took.cut_s * *p->cut_s *
+			      learnt(&l->cond[p->cond]) / cut_s);
+		if (moved_s > 0)
+			count(l, f->nconds, moved(p).s,
+			      took.moved_s * p->moved_s / moved_s);
+	}
 	l->at = to;
-	l->entered_s = job_s;
+	l->entered = l->now;
 }
 
-void eta_wait(struct eta *l, double job_s)
-{
-	/* What was before the first look is not known. */
-	if (l->job_s > 0)
-		l->waited_s = job_s - l->job_s;
-}
-
-void eta_look(struct eta *l, double far_mm, double job_s)
+void eta_look(struct eta *l, double far_mm, const struct eta_spent *spent)
 {
 	const uint32_t to = forecast_part_at(&l->forecast, l->at, far_mm);
 
 	if (!l->forecast.nparts)
 		return;
-	job_s = fmax(0, job_s - l->waited_s);
+	l->now = *spent;
 	if (to > l->at)
-		leave(l, to, job_s);
-	l->job_s = job_s;
+		leave(l, to);
 }
 
 /* -- What that says of the parts to come ----------------------------------- */
@@ -183,28 +208,25 @@ static struct belief believe(const struct seen *s, const struct belief *before)
 		}
 	}
 	b = (struct belief) { .slow = best.slow, .factor = 1 };
-	best.factor = bounded((s->passed_s + s->weight_s * before->factor) /
-			      (takes_s(s->expected_s, &b) + s->weight_s));
+	best.factor = (s->passed_s + s->weight_s * before->factor) /
+		      (takes_s(s->expected_s, &b) + s->weight_s);
 	return best;
 }
 
 /* The present part takes longer than it should. */
-static void see_open(const struct eta *l, struct seen *s)
+static void see_open(struct seen *s, const double expected_s[], double known,
+		     double passed_s)
 {
-	const struct forecast_part *p = &l->forecast.part[l->at];
-	const double known = learnt(&l->cond[p->cond]);
-	const double want_s = *p->cut_s * known;
-	const double over_s = l->job_s - l->entered_s - want_s - p->other_s;
-
-	if (!(*p->cut_s > 0) || over_s <= 0)
+	if (!(*expected_s > 0) || passed_s <= *expected_s * known)
 		return;
-	s->passed_s += want_s + over_s;
-	add(s->expected_s, p->cut_s, known);
+	s->passed_s += passed_s;
+	add(s->expected_s, expected_s, known);
 }
 
 /* Of the job as a whole. */
 static struct seen see_all(const struct eta *l)
 {
+	const struct forecast_part *p = &l->forecast.part[l->at];
 	struct seen s = { .passed_s = 0 };
 	double all_s = 0, done_s = 0;
 
@@ -216,25 +238,28 @@ static struct seen see_all(const struct eta *l)
 		all_s += *c->all_s * learnt(c);
 		done_s += c->expected_s;
 	}
-	see_open(l, &s);
-	s.weight_s = JOB_PART * all_s * forget(l, done_s);
+	see_open(&s, p->cut_s, learnt(&l->cond[p->cond]), in_part(l).cut_s);
+	s.weight_s = JOB_PART * all_s * forget(l, 0, done_s);
 	return s;
 }
 
 static struct belief of_cond(const struct eta *l, const struct belief *all,
 			     uint32_t i)
 {
+	const struct forecast_part *p = &l->forecast.part[l->at];
 	const struct eta_cond *c = &l->cond[i];
 	struct seen s = {
 		.passed_s = c->late_passed_s,
 		.weight_s = COND_PART * *c->all_s * learnt(c) *
-			    forget(l, c->expected_s),
+			    forget(l, i, c->expected_s),
 	};
 	struct belief b;
 
 	add(s.expected_s, c->late_s, learnt(c));
-	if (l->forecast.part[l->at].cond == i)
-		see_open(l, &s);
+	if (i == l->forecast.nconds)
+		see_open(&s, moved(p).s, 1, in_part(l).moved_s);
+	else if (i == p->cond)
+		see_open(&s, p->cut_s, learnt(c), in_part(l).cut_s);
 	b = believe(&s, all);
 	b.factor *= learnt(c);
 	return b;
@@ -263,10 +288,17 @@ static enum eta_by by_what(const struct eta *l, const struct seen *s)
 	return ETA_FORECAST;
 }
 
-/* Return: what is to be cut from the begin of the present part on; and of it,
- * @part_s. */
+/* What is left of what @i is of, where @expected_s and @passed_s are those of
+ * the present part. */
+static double left_s(const struct eta *l, uint32_t i, const struct belief *b,
+		     const double expected_s[], double passed_s)
+{
+	return takes_s(l->cond[i].left_s, b) -
+	       fmin(takes_s(expected_s, b), passed_s);
+}
+
 static double cut_s(const struct eta *l, const struct seen *s,
-		    double *part_s, struct eta_told *ret)
+		    struct eta_told *ret)
 {
 	const struct forecast_part *p = &l->forecast.part[l->at];
 	const struct belief all = believe(s, &(struct belief) { .factor = 1 });
@@ -275,37 +307,53 @@ static double cut_s(const struct eta *l, const struct seen *s,
 	for (uint32_t i = 0; i < l->forecast.nconds; i++) {
 		const struct belief b = of_cond(l, &all, i);
 
-		sum_s += takes_s(l->cond[i].left_s, &b);
-		if (i == p->cond)
-			*part_s = takes_s(p->cut_s, &b);
+		sum_s += i == p->cond ?
+			 left_s(l, i, &b, p->cut_s, in_part(l).cut_s) :
+			 takes_s(l->cond[i].left_s, &b);
 		name_cause(&l->cond[i], &b, i, ret);
 	}
 	return sum_s;
 }
 
-void eta_tell(const struct eta *l, struct eta_told *ret)
+/* What is not cut. */
+static double rest_s(const struct eta *l, struct eta_told *ret)
 {
 	const struct forecast *f = &l->forecast;
-	double cut, other_s = 0, part_s = 0, wide;
+	const struct forecast_part *p = &f->part[l->at];
+	const struct belief b = of_cond(l, &(struct belief) { .factor = 1 },
+					f->nconds);
+	double s = left_s(l, f->nconds, &b, moved(p).s, in_part(l).moved_s);
+
+	name_cause(&l->cond[f->nconds], &b, f->nconds, ret);
+	for (uint32_t i = l->at; i < f->nparts; i++)
+		s += f->part[i].other_s;
+	return s - fmin(p->other_s, in_part(l).other_s);
+}
+
+void eta_tell(const struct eta *l, struct eta_told *ret)
+{
+	double cut, rest, wide;
 	struct seen s;
 
 	*ret = (struct eta_told) { .left_s = -1, .min_s = -1, .max_s = -1,
 				   .factor = 1 };
-	if (!f->nparts)
+	if (!l->forecast.nparts)
 		return;
 	s = see_all(l);
-	for (uint32_t i = l->at; i < f->nparts; i++)
-		other_s += f->part[i].other_s;
-	cut = cut_s(l, &s, &part_s, ret);
-	other_s -= fmin(part_s + f->part[l->at].other_s,
-			l->job_s - l->entered_s);
+	cut = cut_s(l, &s, ret);
+	rest = rest_s(l, ret);
 	ret->by = by_what(l, &s);
 	wide = pow(ret->by == ETA_LEARNT ? LEARNT_UNSURE : UNSURE,
 		   s.weight_s > 0 ? s.weight_s / (s.weight_s + *s.expected_s) :
 		   0);
-	ret->left_s = fmax(0, cut + other_s);
-	ret->min_s = fmax(0, cut / wide + other_s);
-	ret->max_s = fmax(0, cut * wide + other_s);
+	ret->left_s = fmax(0, cut + rest);
+	ret->min_s = fmax(0, cut / wide + rest);
+	ret->max_s = fmax(0, cut * wide + rest);
+}
+
+double eta_passed_s(const struct eta *l)
+{
+	return l->now.cut_s + l->now.moved_s + l->now.other_s;
 }
 
 bool eta_rose(struct eta *l, struct eta_told *ret)
@@ -316,7 +364,7 @@ bool eta_rose(struct eta *l, struct eta_told *ret)
 	if (ret->left_s < 0)
 		return false;
 	if (ret->left_s <= l->least_s * ROSE +
-			   WHOLE_PART * (l->job_s + ret->left_s)) {
+			   WHOLE_PART * (eta_passed_s(l) + ret->left_s)) {
 		l->least_s = fmin(l->least_s, ret->left_s);
 		return false;
 	}

@@ -6,7 +6,8 @@
  * the parts that are done have taken while they were cut is compared with it,
  * condition by condition, and the parts to come are corrected by that.  So a
  * process that removes half of what was believed is noticed in the condition
- * in which it does, and no jump, retract or stand is taken for progress.
+ * in which it does, and no jump, retract or stand is taken for progress.  What
+ * was positioned is compared, too: it takes longer by an override.
  *
  * How much slower the process is than was believed is found so that forecasts
  * of other removals explain what was cut: what is cut at the programmed feed
@@ -37,15 +38,20 @@ struct eta_cond {
 	bool told;			/* that the job takes longer by it */
 };
 
+/* What the job has taken so far, as the cycle counts it (cycle.h). */
+struct eta_spent {
+	double cut_s, moved_s, other_s;
+};
+
 /* Read, do not write; all 0 at first. */
 struct eta {
 	uint32_t n;			/* the program it is of; 0: none */
 	struct forecast forecast;
-	struct eta_cond *cond;		/* as many as the forecast has */
-	uint32_t at;			/* the part that it is in ... */
-	double entered_s;		/* ... since this time of the job */
-	double job_s;			/* at the last look, without ... */
-	double waited_s;		/* ... the waits until then */
+	struct eta_cond *cond;		/* as many as the forecast has, and then
+					 * that of positioning */
+	uint32_t at;			/* the part that it is in, ... */
+	struct eta_spent entered, now;	/* ... when it came there; at the last
+					 * look */
 	double least_s;			/* smallest left_s since it was told
 					 * that the job takes longer */
 };
@@ -74,13 +80,12 @@ int eta_give(struct eta *l, struct forecast *of, uint32_t n);
 /** eta_learnt() - earlier jobs had this factor in condition @cond. */
 void eta_learnt(struct eta *l, uint32_t cond, double factor);
 
-/** eta_wait() - from the last look until @job_s the job waited for something
- *  that is no part of it, as an M code of the PLC. */
-void eta_wait(struct eta *l, double job_s);
-
-/** eta_look() - the farthest place is @far_mm, after @job_s of the job.  It may
+/** eta_look() - the farthest place is @far_mm, after @spent of the job.  It may
  *  be called for the first time anywhere in the job. */
-void eta_look(struct eta *l, double far_mm, double job_s);
+void eta_look(struct eta *l, double far_mm, const struct eta_spent *spent);
+
+/** eta_passed_s() - what the job has taken until then, without waits. */
+double eta_passed_s(const struct eta *l);
 
 /** eta_tell() - the estimate at the last look. */
 void eta_tell(const struct eta *l, struct eta_told *ret);

@@ -7,7 +7,6 @@
 #include "jobs_log.h"
 #include "store_learnt.h"
 #include "compiling.h"
-#include "stands.h"
 #include "thread.h"
 
 #include <errno.h>
@@ -137,7 +136,7 @@ static void correct_materials(struct jobs *j, struct forecasting *f)
 static double whole_s(struct jobs *j, const struct forecasting *f)
 {
 	const struct forecast *of = &f->forecast;
-	double s = of->other_s;
+	double s = of->moved_s + of->other_s;
 
 	if (f->err < 0 || !of->nparts)
 		return -1;
@@ -250,12 +249,14 @@ static int begin(struct jobs *j, const struct store_job *job, int block,
 static void follow(struct jobs *j)
 {
 	const struct shm_snapshot *s = &j->queue.snap;
-	const double job_s = (double)s->job_cycles * (double)s->period_ns / 1e9;
+	const double period_s = (double)s->period_ns * 1e-9;
 	struct eta_told t;
 
-	if (s->stand != STAND_NONE)
-		eta_wait(&j->eta, job_s);
-	eta_look(&j->eta, s->far_mm, job_s);
+	eta_look(&j->eta, s->far_mm, &(struct eta_spent) {
+		.cut_s = (double)s->cut_cycles * period_s,
+		.moved_s = (double)s->moved_cycles * period_s,
+		.other_s = (double)s->other_cycles * period_s,
+	});
 	if (!eta_rose(&j->eta, &t))
 		return;
 	jobs_note(j, &(struct jobs_note) {

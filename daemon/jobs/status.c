@@ -50,6 +50,7 @@ static void fill_time(struct jobs_lcm_status *w, const struct jobs *j)
 {
 	const struct shm_snapshot *s = &j->queue.snap;
 	struct eta_told t = { .left_s = -1, .min_s = -1, .max_s = -1 };
+	const double passed_s = eta_passed_s(&j->eta);
 
 	if (j->eta.n && j->eta.n == j->queue.job.n)
 		eta_tell(&j->eta, &t);
@@ -66,8 +67,8 @@ static void fill_time(struct jobs_lcm_status *w, const struct jobs *j)
 	if (t.by)
 		w->eta_condition = j->eta.forecast.cond[t.cond];
 	w->eta_factor = t.factor;
-	w->progress = t.left_s >= 0 && j->eta.job_s + t.left_s > 0 ?
-		      j->eta.job_s / (j->eta.job_s + t.left_s) :
+	w->progress = t.left_s >= 0 && passed_s + t.left_s > 0 ?
+		      passed_s / (passed_s + t.left_s) :
 		      s->length_mm > 0 ? s->far_mm / s->length_mm : 0;
 }
 

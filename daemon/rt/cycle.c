@@ -227,12 +227,36 @@ static void go(struct cycle *c)
 	}
 }
 
+/* Through air, and where no sparks are, the process has no say. */
+static bool is_cut(const struct cycle *c)
+{
+	return !c->job.dwelling && c->state != STATE_TRAVEL &&
+	       c->state != STATE_PROBE &&
+	       walk_is_cut(c, &c->cursor.seg) &&
+	       !(c->state == STATE_APPROACH && place_mm(c) >= c->far_mm);
+}
+
+static void sum_period(struct cycle *c)
+{
+	struct cycle_totals *t = &c->totals;
+
+	t->cycles++;
+	timed_count(c);
+	if (stand_now(c).why != STAND_NONE)
+		return;
+	if (is_cut(c))
+		t->cut_cycles++;
+	else if (c->state == STATE_TRAVEL && !c->job.dwelling &&
+		 !walk_rejoins(c))
+		t->moved_cycles++;
+	else
+		t->other_cycles++;
+}
+
 static void sum_up(struct cycle *c, bool running)
 {
-	if (running) {
-		c->totals.cycles++;
-		timed_count(c);
-	}
+	if (running)
+		sum_period(c);
 	if (c->state == STATE_ERODE)
 		c->totals.erode_cycles++;
 	if (c->state == STATE_JUMP)

@@ -138,6 +138,10 @@ struct cycle_totals {
 	uint64_t cycles;		/* since start */
 	uint64_t erode_cycles, jump_cycles;
 	uint64_t pulses[INTERP_NAXES];
+	/* Of these, without what the job waited (stand_now()): cut, with its
+	 * jumps and retracts; positioned; and the rest, as dwells, probing,
+	 * and air in front of a cut. */
+	uint64_t cut_cycles, moved_cycles, other_cycles;
 	uint32_t retracts, jumps, shorts, arcs, overruns;
 	double energy_j;		/* of the discharges; NAN: the machine
 					 * does not count it */

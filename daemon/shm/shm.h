@@ -51,7 +51,7 @@
 #include <ck_ring.h>
 
 #define SHM_MAGIC	0x65646d64u	/* "edmd" */
-#define SHM_LAYOUT	19
+#define SHM_LAYOUT	20
 #define SHM_NAXES	8		/* X Y Z A B C U V */
 #define SHM_NGENERATOR	7		/* values of a generator */
 #define SHM_NTOLD	16		/* what it tells: PROCESS_NTOLD */
@@ -124,6 +124,7 @@ struct shm_snapshot {
 					 * now, and the deepest */
 	/* Sums of the job. */
 	uint64_t job_cycles, erode_cycles, jump_cycles;
+	uint64_t cut_cycles, moved_cycles, other_cycles;	/* cycle.h */
 	uint32_t retracts, jumps, shorts, overruns;
 	uint32_t hunts, in_row;		/* how many times many retracts came in
 					 * a row without progress; how many
@@ -230,7 +231,8 @@ enum shm_event_kind {
 	SHM_EV_HUNTING,			/* code: retracts in a row */
 	SHM_EV_STAND,			/* the job stands or waits; code: enum
 					 * stand_reason, NONE: no longer; id:
-					 * what it is about */
+					 * what it is about, and above 32 bits
+					 * its number */
 };
 
 struct shm_event {

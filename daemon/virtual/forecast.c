@@ -27,7 +27,7 @@ struct run {
 	const atomic_bool *ends;
 	double period_s, step_s;
 	struct forecast_part now;	/* the part that is being measured */
-	uint64_t counted;		/* periods of the job */
+	struct cycle_totals counted;	/* of the job */
 	uint32_t at;			/* in this part, if they are known */
 	double far_mm;
 	double most_s, stuck_s;
@@ -45,6 +45,7 @@ static void put_together(struct run *r)
 
 		f->part[n++] = (struct forecast_part) {
 			.to_mm = b->to_mm, .cut_s = { *a->cut_s + *b->cut_s },
+			.moved_s = a->moved_s + b->moved_s,
 			.other_s = a->other_s + b->other_s,
 			.cond = *a->cut_s > *b->cut_s ? a->cond : b->cond,
 		};
@@ -59,6 +60,7 @@ static void end_part(struct run *r, double at_mm)
 
 	r->now.to_mm = at_mm;
 	f->cut_s += *r->now.cut_s;
+	f->moved_s += r->now.moved_s;
 	f->other_s += r->now.other_s;
 	f->part[f->nparts++] = r->now;
 	r->now = (struct forecast_part) { .cond = r->now.cond };
@@ -66,51 +68,42 @@ static void end_part(struct run *r, double at_mm)
 		put_together(r);
 }
 
-/* Through air, and where no sparks are, the process has no say. */
-static bool is_cut(const struct cycle *c)
-{
-	const double at_mm = interp_cursor_place_mm(&c->cursor);
-
-	return !(c->cursor.seg.flags & INTERP_SEG_UNCUT) && !c->job.dwelling &&
-	       !(c->state == STATE_APPROACH && at_mm >= c->far_mm);
-}
-
 /* A part ends where the path goes on, so that the time for which it stands at a
- * place belongs to one part. */
-static void divide(struct run *r, bool cut, double s)
+ * place belongs to one part; it has one kind of time, if it is not short. */
+static void divide(struct run *r, double *to, double s)
 {
 	const struct cycle *c = &r->v.cycle;
 	struct forecast_part *p = &r->now;
-	const bool other = cut ? c->cursor.seg.cond != p->cond ||
-				 !(*p->cut_s > 0) :
-			   !(p->other_s > 0);
+	const bool cut = to == p->cut_s;
+	const bool other = !(*to > 0) || (cut && c->cursor.seg.cond != p->cond);
 
-	if (c->far_mm > r->far_mm &&
-	    *p->cut_s + p->other_s >= (other ? r->step_s / 8 : r->step_s))
+	if (c->far_mm > r->far_mm && *p->cut_s + p->moved_s + p->other_s >=
+				     (other ? r->step_s / 8 : r->step_s))
 		end_part(r, r->far_mm);
 	r->far_mm = fmax(r->far_mm, c->far_mm);
-	if (cut) {
-		*p->cut_s += s;
+	*to += s;
+	if (cut)
 		p->cond = c->cursor.seg.cond;
-	} else {
-		p->other_s += s;
-	}
 }
 
 static void measure(struct run *r)
 {
-	const struct cycle *c = &r->v.cycle;
-	const double s = (double)(c->totals.cycles - r->counted) * r->period_s;
-	const bool cut = is_cut(c);
+	const struct cycle_totals *t = &r->v.cycle.totals;
+	const struct cycle_totals was = r->counted;
+	const bool cut = t->cut_cycles > was.cut_cycles;
 
-	r->counted = c->totals.cycles;
-	if (r->of == FORECAST_ALL) {
-		divide(r, cut, s);
-		return;
+	r->counted = *t;
+	if (r->of != FORECAST_ALL) {
+		r->at = forecast_part_at(r->to, r->at, r->v.cycle.far_mm);
+		if (cut)
+			r->to->part[r->at].cut_s[r->of] += r->period_s;
+	} else if (cut) {
+		divide(r, r->now.cut_s, r->period_s);
+	} else if (t->moved_cycles > was.moved_cycles) {
+		divide(r, &r->now.moved_s, r->period_s);
+	} else if (t->other_cycles > was.other_cycles) {
+		divide(r, &r->now.other_s, r->period_s);
 	}
-	r->at = forecast_part_at(r->to, r->at, c->far_mm);
-	if (cut)
-		r->to->part[r->at].cut_s[r->of] += s;
 }
 
 static void say_why_not(struct run *r, const char *what)
@@ -177,7 +170,7 @@ static int begin(struct forecast *f, const struct interp_program *p)
 {
 	f->nconds = p->head->nconds;
 	f->part = calloc(FORECAST_PARTS, sizeof(*f->part));
-	f->cond = calloc(f->nconds, sizeof(*f->cond));
+	f->cond = calloc(f->nconds + 1, sizeof(*f->cond));
 	if (!f->part || !f->cond)
 		return -ENOMEM;
 	for (uint32_t i = 0; i < f->nconds; i++)
@@ -185,6 +178,7 @@ static int begin(struct forecast *f, const struct interp_program *p)
 			interp_tech_name(p->conds[i].letter,
 					 p->conds[i].number, f->cond[i],
 					 sizeof(f->cond[i]));
+	snprintf(f->cond[f->nconds], sizeof(*f->cond), "positioning");
 	return 0;
 }
 

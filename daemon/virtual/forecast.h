@@ -5,7 +5,8 @@
  * The job is run once on the simulated machine of the machine file.  The path
  * is divided into parts, and each part has the time during which the farthest
  * place reached was in it: what went into cutting, with the jumps and retracts
- * of it, and the rest.  Time does not run while a job is held.
+ * of it, what went into positioning, and the rest, as the cycle counts them
+ * (cycle.h).  Time does not run while a job is held or waits.
  *
  * A process that removes half or twice as much does not change all parts alike:
  * what is cut at the programmed feed takes no shorter.  So the job may be run
@@ -38,7 +39,7 @@ enum forecast_removal { FORECAST_ALL, FORECAST_HALF, FORECAST_TWICE,
 struct forecast_part {
 	double to_mm;			/* the last place in it */
 	double cut_s[FORECAST_REMOVALS];	/* by what is removed */
-	double other_s;
+	double moved_s, other_s;
 	uint32_t cond;			/* in which it is cut: its index */
 };
 
@@ -46,9 +47,10 @@ struct forecast_part {
 struct forecast {
 	struct forecast_part *part;
 	uint32_t nparts;
-	double cut_s, other_s;		/* of all parts, FORECAST_ALL */
+	double cut_s, moved_s, other_s;	/* of all parts, FORECAST_ALL */
 	uint32_t nconds;
-	char (*cond)[16];		/* their names; "" is that of 0 */
+	char (*cond)[16];		/* their names; "" is that of 0; and
+					 * "positioning" */
 	char why_not[96];		/* it has no parts; "": it has */
 };
 

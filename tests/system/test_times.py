@@ -84,6 +84,32 @@ def test_the_next_job_begins_with_what_was_learnt(slow):
     assert s.eta_max_s < 1.4 * s.eta_s      # and it is surer
 
 
+# Much of its time is positioning, between the cuts of its condition.
+HOLES = b"M3\nF60\nC110\nM98 P10 L3\nG90 G0 Z5\nM30\nO10\nG90 G0 Z.1\n" \
+    b"G1 Z-.1\nG0 Z40\nG91 G0 X14 Y6\nG90\nM99\n"
+
+
+def test_what_positioning_takes_at_a_low_override_is_no_slow_cut(slow):
+    c = slow.client
+    full = held(slow, "one", HOLES)
+    assert c.ask("override", arg=0.1).code == 0
+    n = len(c.statuses)
+    assert c.ask("start").code == 0
+    all_s = c.job_where("one", "done", timeout=60)["job_s"]
+    assert all_s > 1.5 * full.eta_s
+    late = [t for t in c.statuses[n:]
+            if t.job == "one" and all_s * 0.3 < t.job_s < all_s * 0.9]
+    assert late
+    for t in late:
+        assert t.eta_s == pytest.approx(all_s - t.job_s, rel=0.25)
+    held(slow, "two")
+    db = sqlite3.connect(next(slow.store.glob("*.db")))
+    (name, passed, expected), = db.execute(
+        "SELECT condition, passed_s, expected_s FROM learnt")
+    assert name == "C110"
+    assert passed / expected == pytest.approx(2, rel=0.2)
+
+
 def test_a_service_that_comes_back_knows_it_again(slow):
     c = slow.client
     held(slow, "one")

@@ -88,6 +88,40 @@ static void it_approaches_until_the_first_spark(void **st)
 	rig_free(&r);
 }
 
+/* What the time left is learnt from: what waits is none of the three. */
+static void a_period_is_cut_or_positioned_or_something_else(void **st)
+{
+	const struct cycle_config k = usual_config();
+	const struct cycle_totals *t;
+	struct cycle_totals was;
+	struct rig r;
+
+	(void)st;
+	begin_cut(&r, &k);
+	t = &r.c.totals;
+	r.c.override = 0;
+	steps(&r, OPEN_V, 50);
+	was = *t;
+	assert_in_range(was.cycles, 49, 51);
+	assert_int_equal(t->cut_cycles + t->moved_cycles + t->other_cycles, 0);
+	r.c.override = 0.1;
+	until(&r, STATE_APPROACH, OPEN_V, 10000);
+	assert_in_range(t->cycles - was.cycles - t->moved_cycles, 0, 1);
+	assert_true(t->moved_cycles > 50);
+	assert_int_equal(t->cut_cycles, 0);
+	was = *t;
+	steps(&r, OPEN_V, 100);			/* through air */
+	assert_int_equal(t->other_cycles - was.other_cycles, 100);
+	assert_int_equal(t->cut_cycles, 0);
+	was = *t;
+	steps(&r, SPARKING_V, 100);
+	until(&r, STATE_RETRACT, SHORTED_V, 100);
+	until(&r, STATE_ERODE, SPARKING_V, 1000);
+	assert_in_range(t->cycles - was.cycles -
+			(t->cut_cycles - was.cut_cycles), 0, 1);
+	rig_free(&r);
+}
+
 /* -- Retract ------------------------------------------------------------- */
 
 static void a_short_that_clears_is_cut_again(void **st)
@@ -446,6 +480,8 @@ int main(void)
 		cmocka_unit_test(in_three_zones_it_feeds_in_proportion_stands_or_goes_back),
 		cmocka_unit_test(the_feed_is_limited_by_machine_and_program),
 		cmocka_unit_test(it_approaches_until_the_first_spark),
+		cmocka_unit_test(
+			a_period_is_cut_or_positioned_or_something_else),
 		cmocka_unit_test(a_short_that_clears_is_cut_again),
 		cmocka_unit_test(a_short_that_stays_is_a_fault_after_limit_and_wait),
 		cmocka_unit_test(it_goes_back_no_farther_than_the_start_of_the_path),

@@ -132,6 +132,7 @@ static void probe_somewhere(uint64_t *s, bool by_input)
 	assert_int_equal(w.r.c.probe.found[0][INTERP_X], wall);
 	assert_int_equal(w.r.out.target[INTERP_X], wall - sign * 5000);
 	assert_int_equal(w.r.c.cursor.pos[INTERP_X], sign * 5000);
+	assert_int_equal(w.r.c.totals.cut_cycles, 0);
 	rig_free(&w.r);
 }
 
