@@ -346,6 +346,19 @@ static void print_electrodes(json_t *rows)
 		       ctl_number_of(row, "sparked_s") / 60);
 }
 
+static void print_said(json_t *rows)
+{
+	char at[32];
+	json_t *row;
+	size_t i;
+
+	json_array_foreach(rows, i, row) {
+		ctl_when(at, row, "utime");
+		printf("%-10s %s  %s\n", i ? "" : "said", at,
+		       ctl_text_of(row, "text"));
+	}
+}
+
 static void print_one(json_t *job)
 {
 	static const struct {
@@ -386,6 +399,7 @@ static void print_one(json_t *job)
 		       json_string_value(note));
 	print_electrodes(json_object_get(job, "electrodes"));
 	print_changes(json_object_get(job, "changes"));
+	print_said(json_object_get(job, "said"));
 }
 
 static int larger(int a, int b)

@@ -235,6 +235,7 @@ static void fill_stand(const struct shm_snapshot *s, bool ok, json_t *to)
 
 	json_object_set_new(to, "stand", json_string(row->name));
 	json_object_set_new(to, "standOf", json_integer(s->stand_of));
+	json_object_set_new(to, "standN", json_integer(s->stand_n));
 	json_object_set_new(to, "asks",
 			    json_boolean(row->ends == STAND_BY_CONFIRM &&
 					 !s->confirmed));

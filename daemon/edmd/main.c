@@ -150,6 +150,8 @@ static int run_with_machine(struct loop *l, const struct machine_config *c,
 		return EX_CANTCREAT;
 	}
 	setup_process(&setup);
+	/* No stand has a number that one of an earlier edmd had. */
+	l->cycle.stand.n = l->status->head.instance;
 	resume(l, c, before);
 	code = run(l, c, &setup);
 	program_close(l->program);

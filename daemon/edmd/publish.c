@@ -51,7 +51,8 @@ SAME(SHM_STILL_THERE, ANSWER_STILL_THERE);
 SAME(SHM_NO_POWER, ANSWER_NO_POWER);
 SAME(SHM_ASKS, ANSWER_ASKS);
 SAME(SHM_NOT_ASKED, ANSWER_NOT_ASKED);
-SAME(SHM_NOT_ASKED + 1, CYCLE_NANSWERS);
+SAME(SHM_OVER, ANSWER_OVER);
+SAME(SHM_OVER + 1, CYCLE_NANSWERS);
 SAME(SHM_OUTCOME_NONE, OUTCOME_NONE);
 SAME(SHM_OUTCOME_DONE, OUTCOME_DONE);
 SAME(SHM_OUTCOME_FAULT, OUTCOME_FAULT);
@@ -202,7 +203,8 @@ static void notice_stand(struct loop *l)
 		return;
 	t->stand = now;
 	t->stood = l->cycle.count;
-	loop_event(l, SHM_EV_STAND, now.of, (int32_t)now.why);
+	loop_event(l, SHM_EV_STAND,
+		   (uint64_t)l->cycle.stand.n << 32 | now.of, (int32_t)now.why);
 }
 
 /* Faults come first, so that a reader of "state: fault" already knows which. */
@@ -289,6 +291,7 @@ static void snapshot_stand(const struct loop *l, struct shm_snapshot *s)
 	s->mcode_at = l->cycle.mcode.at;
 	s->kept_stand = l->cycle.stand.why;
 	s->kept_of = l->cycle.stand.of;
+	s->stand_n = l->cycle.stand.n;
 	s->confirmed = l->cycle.stand.confirmed;
 }
 
@@ -320,12 +323,12 @@ static void snapshot_sums(const struct cycle *c, struct shm_snapshot *s)
 	s->job_cycles = t->cycles;
 	s->erode_cycles = t->erode_cycles;
 	s->jump_cycles = t->jump_cycles;
-	s->retracts = t->retracts;
-	s->hunts = t->hunts;
-	s->in_row = c->retract.in_row;
 	s->cut_cycles = t->cut_cycles;
 	s->moved_cycles = t->moved_cycles;
 	s->other_cycles = t->other_cycles;
+	s->retracts = t->retracts;
+	s->hunts = t->hunts;
+	s->in_row = c->retract.in_row;
 	s->jumps = t->jumps;
 	s->shorts = t->shorts;
 	s->arcs = t->arcs;

@@ -139,15 +139,16 @@ static struct cycle_past past_of(const struct shm_snapshot *s)
 			.why = s->kept_stand < STAND_NREASONS ?
 			       (enum stand_reason)s->kept_stand : STAND_NONE,
 			.of = s->kept_of, .confirmed = s->confirmed,
+			.n = s->stand_n,
 		},
 		.totals = {
 			.cycles = s->job_cycles,
 			.erode_cycles = s->erode_cycles,
 			.jump_cycles = s->jump_cycles,
-			.retracts = s->retracts, .jumps = s->jumps,
 			.cut_cycles = s->cut_cycles,
 			.moved_cycles = s->moved_cycles,
 			.other_cycles = s->other_cycles,
+			.retracts = s->retracts, .jumps = s->jumps,
 			.shorts = s->shorts, .overruns = s->overruns,
 			.hunts = s->hunts, .arcs = s->arcs,
 			.energy_j = s->energy_j,

@@ -225,10 +225,15 @@ void asks_event(struct jobs *j, const struct shm_event *e)
 		.why = (uint32_t)e->code, .of = (uint32_t)e->id,
 		.line = e->line,
 	};
+	const int64_t n = (int64_t)(e->id >> 32);
 	char asks[ASKS_TEXT_MAX];
 
 	if (!j->queue.job.n || e->program != j->queue.job.n || !calls(w.why))
 		return;
+	/* The next edmd comes to it again, and so does a reset of a fault. */
+	if (store_number(j->store, "stand_told", -1) == n)
+		return;
+	store_set_number(j->store, "stand_told", n);
 	say(j, &w, asks, sizeof(asks));
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "stands", .job = j->queue.job.id,
@@ -243,16 +248,23 @@ void asks_held(struct jobs *j, const char *by)
 	snprintf(j->asks.by, sizeof(j->asks.by), "%s", by);
 }
 
-void asks_confirmed(struct jobs *j, const char *by)
+struct asks_stand asks_stand(const struct jobs *j)
 {
 	const struct shm_snapshot *s = snap_of(j);
 
-	if (!is_ours(j))
+	return (struct asks_stand) {
+		is_ours(j) ? s->kept_stand : STAND_NONE, s->line, s->place_mm,
+	};
+}
+
+void asks_answered(struct jobs *j, const struct asks_stand *at, const char *by,
+		   bool starts)
+{
+	if (!calls(at->why))
 		return;
 	jobs_note(j, &(struct jobs_note) {
 		.kind = "confirmed", .job = j->queue.job.id,
-		.outcome = stand_row(s->kept_stand)->name,
-		.place_mm = s->place_mm,
-	}, "job %s, line %u: %s: done, says %s", j->queue.job.name, s->line,
-		  stand_row(s->kept_stand)->what, by);
+		.outcome = stand_row(at->why)->name, .place_mm = at->place_mm,
+	}, "job %s, line %u: %s: %s, says %s", j->queue.job.name, at->line,
+		  stand_row(at->why)->what, starts ? "go on" : "done", by);
 }

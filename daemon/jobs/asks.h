@@ -12,6 +12,7 @@
 
 #include "shm.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -48,7 +49,17 @@ void asks_event(struct jobs *j, const struct shm_event *e);
 /** asks_held() - a command of @by holds the machine; "": it goes on. */
 void asks_held(struct jobs *j, const char *by);
 
-/** asks_confirmed() - edmd has taken the confirmation of @by. */
-void asks_confirmed(struct jobs *j, const char *by);
+/* What the loaded job stands for, and where. */
+struct asks_stand {
+	uint32_t why, line;
+	double place_mm;
+};
+
+struct asks_stand asks_stand(const struct jobs *j);
+
+/** asks_answered() - edmd has taken what @by said to stand @at: it is done; or,
+ *  @starts, the job goes on. */
+void asks_answered(struct jobs *j, const struct asks_stand *at, const char *by,
+		   bool starts);
 
 #endif /* JOBS_ASKS_H */

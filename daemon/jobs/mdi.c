@@ -28,6 +28,7 @@ struct mdi_check {
 	struct compiler *compile;
 	struct mdi m;			/* what it points at is below */
 	char id[64], name[64], text[MDI_TEXT_MAX + 1];
+	char by[KEYFILE_NAME_MAX];
 	struct asker asker;
 	int64_t signed_us;		/* when that one asked last */
 	int32_t pos[SHM_NAXES];		/* where they begin */
@@ -103,7 +104,8 @@ static int add(struct jobs *j, const struct mdi *m, uint32_t lines)
 	/* The job has a transaction of its own. */
 	if (act_commit(j))
 		return -EIO;
-	snprintf(told, sizeof(told), "%s begins at once", m->name);
+	snprintf(told, sizeof(told), "%s begins at once, says %s", m->name,
+		 m->by);
 	return jobs_add(j, &(struct store_new) {
 		.id = m->id, .name = m->name, .sha256 = hex, .tech_sha256 = "",
 		.text = m->text, .bytes = strlen(m->text), .lines = lines,
@@ -167,6 +169,8 @@ static struct mdi_check *check_new(struct jobs *j,
 	k->m.id = k->id;
 	k->m.name = k->name;
 	k->m.text = k->text;
+	snprintf(k->by, sizeof(k->by), "%s", c->by ? c->by->name : "");
+	k->m.by = k->by;
 	reply_asker_keep(&k->asker, c);
 	k->signed_us = c->signed_us;
 	memcpy(k->pos, j->link.snap.pos, sizeof(k->pos));

@@ -20,6 +20,7 @@
 /* What is to be carried out. */
 struct mdi {
 	const char *id, *name, *text;
+	const char *by;			/* who asks: mdi_run() knows it */
 	const char *dialect;		/* lent, until the end; NULL: that of
 					 * the machine file */
 	uint32_t measures;		/* as in struct store_job */

@@ -125,6 +125,14 @@ static void feel(struct jobs *j, const struct jobs_lcm_command *c,
 	});
 }
 
+static void tell_put(struct jobs *j, const struct jobs_lcm_command *c,
+		     const char *told)
+{
+	jobs_note(j, &(struct jobs_note) { .kind = "offset" }, "%s, says %s",
+		  told, c->by ? c->by->name : "");
+	verbs_answer(j, c, 0, told);
+}
+
 void offset_set(struct jobs *j, const struct verb *v,
 		const struct jobs_lcm_command *c)
 {
@@ -145,7 +153,7 @@ void offset_set(struct jobs *j, const struct verb *v,
 	else if (offset_put(j, &t, &j->link.snap, told))
 		verbs_answer(j, c, EX_IOERR, "the store failed");
 	else
-		verbs_answer(j, c, 0, told);
+		tell_put(j, c, told);
 }
 
 static int read_back(struct jobs *j, struct touch *ret)

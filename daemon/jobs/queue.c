@@ -301,18 +301,20 @@ static void follow_hunting(struct jobs *j, const struct shm_event *e)
 	}, "job %s: " HUNTING_WHAT "; " HUNTING_ADVICE, q->job.name, e->code);
 }
 
-/* A service that has come reads all of edmd's events again.  Most are known by
- * their time in the store; these are by their number. */
+/* A service that has come, or finds another edmd, reads all events again.  Most
+ * are known by their time in the store; these are by their number in the object
+ * that one edmd hands to the next. */
 static bool is_old(struct jobs *j)
 {
 	const struct link *l = &j->link;
 	const int64_t number = (int64_t)l->events.next;
+	const int64_t born = (int64_t)l->status->born;
 
 	if (link_is_repeat(l) &&
-	    store_number(j->store, "followed_of", -1) == l->instance &&
+	    store_number(j->store, "followed_of", -1) == born &&
 	    store_number(j->store, "followed", 0) >= number)
 		return true;
-	store_set_number(j->store, "followed_of", l->instance);
+	store_set_number(j->store, "followed_of", born);
 	store_set_number(j->store, "followed", number);
 	return false;
 }

@@ -67,6 +67,14 @@
 			"(SELECT text FROM event WHERE event.job=job.id AND " \
 			"kind='note' ORDER BY event.rowid LIMIT ?2))"
 
+/* What somebody said to it: that it is sent, that a stand is over; and what it
+ * has touched off. */
+#define SAID_JSON	", 'said', (SELECT json_group_array(json(e)) FROM " \
+			"(SELECT json_object('utime', utime, 'text', text) AS " \
+			"e FROM (SELECT * FROM event WHERE event.job=job.id " \
+			"AND kind IN ('queued', 'confirmed', 'offset') ORDER BY " \
+			"event.rowid DESC LIMIT ?2) ORDER BY rowid))"
+
 /* The place of a job in a list; a smaller number is earlier. */
 #define IN_HISTORY	"-ended_us, -n"
 
@@ -125,7 +133,8 @@ static sqlite3_stmt *list_query(struct store *s,
 	case STORE_SHOW:
 		return store_ask(s, ret_err, "SELECT "
 				 JOB_JSON(SUMS_JSON CHANGES_JSON
-					  NOTES_JSON) " FROM job WHERE id=?1",
+					  NOTES_JSON SAID_JSON)
+				 " FROM job WHERE id=?1",
 				 "si", id, (int64_t)rows);
 	case STORE_QUEUE:
 		return store_ask(s, ret_err, JOBS_SQL(QUEUED_JSON,

@@ -44,6 +44,7 @@ struct asked {
 	const struct verb *verb;
 	uint32_t arg;			/* what edmd was asked for */
 	double arg_mm;
+	struct asks_stand at;		/* when it was asked */
 };
 
 int verbs_answer(struct jobs *j, const struct jobs_lcm_command *c, int code,
@@ -105,6 +106,8 @@ static const char *refusal(int code)
 		[SHM_NO_POWER] = "an axis cannot have power: safe torque "
 				 "off, its supply or its enable input; "
 				 "repair that, then ask again",
+		[SHM_OVER] = "that stand is over: somebody was quicker; look "
+			     "what the machine wants now",
 		[SHM_STILL_THERE] = "what caused the fault is still there; "
 				    "edmctl alarms says what clears it",
 	};
@@ -199,9 +202,10 @@ static void keep_who(const struct asked *a)
 	case SHM_DO_START:
 	case SHM_DO_RESUME:
 		asks_held(a->jobs, "");
+		asks_answered(a->jobs, &a->at, a->name, true);
 		break;
 	case SHM_DO_CONFIRM:
-		asks_confirmed(a->jobs, a->name);
+		asks_answered(a->jobs, &a->at, a->name, false);
 		break;
 	default:
 		break;
@@ -277,6 +281,7 @@ static struct asked *asked_new(struct jobs *j, const struct verb *v,
 	}
 	a->jobs = j;
 	a->verb = v;
+	a->at = asks_stand(j);
 	reply_asker_keep(&a->by, c);
 	snprintf(a->name, sizeof(a->name), "%s", c->by ? c->by->name : "");
 	return a;
@@ -380,6 +385,20 @@ static void verb_machine(struct jobs *j, const struct verb *v,
 			 const struct jobs_lcm_command *c)
 {
 	ask_machine(j, v, c, 0);
+}
+
+/* Its text may name the stand that it was meant for, when that was shown. */
+static void verb_of_stand(struct jobs *j, const struct verb *v,
+			  const struct jobs_lcm_command *c)
+{
+	char *end;
+	const unsigned long n = strtoul(c->text, &end, 10);
+
+	if (*end || n > UINT32_MAX)
+		verbs_answer(j, c, EX_DATAERR, "text is the number of a stand, "
+			     "or empty");
+	else
+		ask_machine(j, v, c, (uint32_t)n);
 }
 
 /* A reset may come before the fault is seen. */
@@ -756,7 +775,7 @@ static void verb_start(struct jobs *j, const struct verb *v,
 	} else if (*c->job && (!here || job.n != q->job.n)) {
 		start_behind(j, c, &job);
 	} else if (here) {
-		verb_machine(j, v, c);
+		verb_of_stand(j, v, c);
 	} else if (store_head(j->store, &job) == 0) {
 		start_behind(j, c, &job);
 	} else {
@@ -782,7 +801,7 @@ static const struct verb verbs[] = {
 	  "nothing" },
 	{ "reset", ROLE_OPERATOR, VERB_ACTS, verb_machine, SHM_DO_RESET,
 	  "a fault" },
-	{ "done", ROLE_OPERATOR, VERB_ACTS, verb_machine, SHM_DO_CONFIRM,
+	{ "done", ROLE_OPERATOR, VERB_ACTS, verb_of_stand, SHM_DO_CONFIRM,
 	  "a job that asks for something" },
 	{ "step", ROLE_OPERATOR, VERB_ACTS, verb_step, SHM_DO_STEP,
 	  "a job held on its path" },

@@ -131,6 +131,8 @@ void verbs_why(struct jobs *j, const struct verb *v,
 	}
 	if (err == 0)
 		waits_why(j, &job, why, sizeof(why));
-	verbs_answer_json(j, c, json_pack("{s:s,s:s}", "job",
-					  err == 0 ? job.id : "", "why", why));
+	verbs_answer_json(j, c, json_pack("{s:s,s:s,s:I}", "job",
+					  err == 0 ? job.id : "", "why", why,
+					  "stand",
+					  (json_int_t)j->link.snap.stand_n));
 }

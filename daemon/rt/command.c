@@ -281,6 +281,9 @@ enum cycle_answer cycle_command(struct cycle *c, const struct cycle_command *m)
 		return (enum cycle_answer)manual_place(c, m->arg, m->arg_mm);
 	if (m->verb == CYCLE_JOG || m->verb == CYCLE_HOME)
 		return do_manual(c, m);
+	if ((m->verb == CYCLE_START || m->verb == CYCLE_CONFIRM) &&
+	    !stand_is(c, m->arg))
+		return ANSWER_OVER;
 	return verbs[m->verb](c, m->arg_mm);
 }
 

@@ -101,7 +101,8 @@ struct cycle_command {
 					 * bears it */
 	uint32_t verb;			/* enum cycle_verb */
 	uint32_t arg;			/* set: enum interp_tech_id; jog, home:
-					 * enum interp_axis */
+					 * enum interp_axis; start, confirm: the
+					 * stand that it is for, or 0 */
 	double arg_mm;			/* set: the field's own unit; override:
 					 * a factor; step, confirm: a number */
 };
@@ -128,6 +129,7 @@ enum cycle_answer {
 					 * not confirmed */
 	ANSWER_NOT_ASKED,		/* confirm: the stand does not ask for
 					 * that */
+	ANSWER_OVER,			/* the stand that it is for is over */
 	CYCLE_NANSWERS,
 	/* And a fault: a guard sees it, so nothing may begin. */
 	ANSWER_SEEN = 100
@@ -136,12 +138,12 @@ enum cycle_answer {
 /* Sums of one job, for status and report. */
 struct cycle_totals {
 	uint64_t cycles;		/* since start */
-	uint64_t erode_cycles, jump_cycles;
-	uint64_t pulses[INTERP_NAXES];
 	/* Of these, without what the job waited (stand_now()): cut, with its
 	 * jumps and retracts; positioned; and the rest, as dwells, probing,
 	 * and air in front of a cut. */
 	uint64_t cut_cycles, moved_cycles, other_cycles;
+	uint64_t erode_cycles, jump_cycles;
+	uint64_t pulses[INTERP_NAXES];
 	uint32_t retracts, jumps, shorts, arcs, overruns;
 	double energy_j;		/* of the discharges; NAN: the machine
 					 * does not count it */

@@ -28,6 +28,7 @@ static const char *const answers[CYCLE_NANSWERS] = {
 	[ANSWER_NO_POWER]	= "an axis cannot have power",
 	[ANSWER_ASKS]		= "it asks for something that nobody confirmed",
 	[ANSWER_NOT_ASKED]	= "that is not asked for",
+	[ANSWER_OVER]		= "the stand that it was for is over",
 };
 
 const char *cycle_outcome_name(enum cycle_outcome o)

@@ -7,12 +7,18 @@
 void stand_begin(struct cycle *c, enum stand_reason why, uint32_t of)
 {
 	if (c->stand.why == STAND_NONE)
-		c->stand = (struct stand) { .why = why, .of = of };
+		c->stand = (struct stand) { .why = why, .of = of,
+					    .n = c->stand.n + 1 };
 }
 
 void stand_end(struct cycle *c)
 {
-	c->stand = (struct stand) { .why = STAND_NONE };
+	c->stand = (struct stand) { .why = STAND_NONE, .n = c->stand.n };
+}
+
+bool stand_is(const struct cycle *c, uint32_t n)
+{
+	return n == 0 || (n == c->stand.n && c->stand.why != STAND_NONE);
 }
 
 bool stand_asks(const struct cycle *c)

@@ -21,6 +21,8 @@ struct stand {
 	uint32_t of;			/* what it asks for: the electrode's
 					 * number; a bit of each field to set */
 	bool confirmed;
+	uint32_t n;			/* the number of this stand: how many
+					 * there were */
 };
 
 /* What is shown. */
@@ -38,6 +40,9 @@ void stand_end(struct cycle *c);
 /** stand_asks() - has nobody confirmed what is asked for?  Then nothing goes on
  *  along the path: start is refused, and a step ahead. */
 bool stand_asks(const struct cycle *c);
+
+/** stand_is() - is it still stand @n?  0: whichever it is. */
+bool stand_is(const struct cycle *c, uint32_t n);
 
 /** stand_confirm() - somebody says that it is done; @of says what, where the
  *  stand is about a number, and is 0 elsewhere.  Return: false if that is not

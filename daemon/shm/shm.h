@@ -181,6 +181,8 @@ struct shm_snapshot {
 					 * field to set */
 	uint32_t kept_stand, kept_of;	/* the same of the job, also while a
 					 * fault is latched */
+	uint32_t stand_n, pad5;		/* its number: a start may be for this
+					 * one alone */
 	uint64_t stand_cycles;		/* how long */
 	/* By enum interp_tech_id: what the generator is asked for, NAN: its own
 	 * setting; what it tells by enum process_id, NAN: nothing; a bit of
@@ -357,6 +359,7 @@ enum shm_answer {
 	SHM_NO_POWER,
 	SHM_ASKS,
 	SHM_NOT_ASKED,
+	SHM_OVER,
 	/* Not of the cycle: */
 	SHM_LATE = 50,			/* came after its until_ns: not done */
 	SHM_CUT_SHORT,			/* edmd ended while it did it; the place

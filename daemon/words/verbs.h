@@ -12,7 +12,8 @@
 #define WORDS_VERBS_H
 
 #define VERB_ROWS(V) \
-	V(START)	/* from held: begin or go on */ \
+	V(START)	/* from held: begin or go on; arg: the stand that it is \
+			 * for, 0: whichever */ \
 	V(HOLD)		/* power off, stop on the path */ \
 	V(RESUME)	/* the same as start, after a hold */ \
 	V(STOP)		/* end the job here */ \
@@ -25,7 +26,8 @@
 	V(JOG)		/* idle: axis arg by arg_mm */ \
 	V(HOME)		/* idle: axis arg; 8: all axes */ \
 	V(JOG_ON)	/* axis at arg_mm mm/s while this is repeated */ \
-	V(CONFIRM)	/* what a stand asks for is done; arg_mm: its number */ \
+	V(CONFIRM)	/* what a stand asks for is done; arg_mm: its number; \
+			 * arg: as of START */ \
 	V(TRY)		/* idle: ask the generator for field VERB_TRY_FIELD(arg) \
 			 * as arg_mm; NAN: no more; beyond the last: all */ \
 	V(PLACE)	/* idle: axis arg, which nothing homes, stands at \

@@ -781,6 +781,32 @@ SECOND = """() => {
 }"""
 
 
+def test_a_press_is_for_the_stand_it_was_begun_for(p, page):
+    """Somebody else goes on, and the next stand comes, under the finger."""
+    client = p.machine.client
+    end_job(page, p)
+    assert client.submit(b"G21 G90 F600\nG0 Z1\nM0 (one)\nG0 Z2\nM0 (two)\n"
+                         b"G0 Z3\nM30\n", "twice").code == 0
+    key, why = page.locator("#start"), page.locator(".head .state p")
+    expect(why).to_contain_text("line 3")
+    expect(key).to_have_attribute("aria-disabled", "false")
+    page.evaluate(SECOND)
+    key.hover()
+    page.mouse.down()
+    expect(key).to_have_class(re.compile("pressed"))
+    assert client.ask("start").code == 0
+    client.status_where(lambda s: s.stand == "stop" and s.line == 5, 20)
+    expect(why).to_contain_text("line 5")
+    assert page.evaluate("over()") == 1
+    page.mouse.up()
+    expect(page.locator(".toasts").last).to_contain_text(
+        "that stand is over")
+    expect(why).to_contain_text("line 5")
+    assert client.ask("stop").code == 0
+    client.job_where("twice", "stopped", 20)
+    page.reload()
+
+
 def test_a_press_is_for_the_job_it_was_begun_for(p, page):
     """The job is ended, and the next one comes, while a finger is on the key."""
     client = p.machine.client

@@ -57,6 +57,32 @@ def at_the_change(m):
     return stands(m, "electrode")
 
 
+def test_a_start_is_for_the_stand_that_was_seen(shop):
+    c = shop.client
+    c.submit(b"G21 G90 F600\nG0 Z1\nM0 (one)\nG0 Z2\nM0 (two)\nG0 Z3\nM30\n",
+             "twice", hold=True)
+    stands(shop, "ready")
+    ready = json.loads(c.ask("why").body)["stand"]
+    one, two, three = (str(ready + i) for i in range(3))
+    assert c.ask("start", text=one).code == 0
+    c.status_where(lambda s: s.stand == "stop" and s.line == 3, 20)
+    again = c.ask("start", text=one)
+    assert again.code == 1 and "that stand is over" in again.reason
+    assert c.ask("start", text=two).code == 0
+    c.status_where(lambda s: s.stand == "stop" and s.line == 5, 20)
+    shop.come_back(lambda s: s.stand == "stop")
+    for seen in (one, two):
+        assert "that stand is over" in c.ask("start", text=seen).reason
+    assert c.ask("start", text="no").code == 65
+    assert c.ask("start", text=three).code == 0
+    c.job_where("twice", "done", 20)
+    told = [e.text for e in c.events if e.kind == "stands"]
+    assert len(told) == 2, told             # also after edmd was killed
+    said = ctl(shop, "show", "twice")
+    assert len(re.findall(r"line [35]: the program stops here: go on, says "
+                          r"\S", said)) == 2, said
+
+
 def held(m):
     out = json.loads(ctl(m, "--json", "electrode", "list"))
     return [e["n"] for e in out if e["held"]]
@@ -84,7 +110,9 @@ def test_an_electrode_is_asked_for_and_confirmed(shop):
     s = shop.client.status_where(lambda s: s.job == "")
     assert (s.stand, s.asks, s.stand_s) == ("", "", 0)
     told = shop.log("edmd-jobs")
-    assert re.search("line 3: another electrode.*: done, says [a-z]", told)
+    who = "line 3: another electrode.*: done, says [a-z]"
+    assert re.search(who, told)
+    assert re.search(who, ctl(shop, "history", "work"))
     assert "stands: job job.ngc, line 5: the program stops" in told
 
 

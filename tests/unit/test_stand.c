@@ -60,6 +60,41 @@ static void only_its_own_number_answers_for_it(void **st)
 	rig_free(&r);
 }
 
+static enum cycle_answer tell_of(struct rig *r, uint32_t verb, uint32_t stand)
+{
+	return cycle_command(&r->c, &(struct cycle_command) {
+		.verb = verb, .arg = stand, .arg_mm = WANTED,
+	});
+}
+
+/* Two people see the same stand, and both answer it. */
+static void an_answer_is_for_the_stand_that_was_seen(void **st)
+{
+	uint32_t seen, ready;
+	struct rig r;
+
+	(void)st;
+	at_the_change(&r);
+	seen = r.c.stand.n;
+	ready = seen - 1;
+	assert_int_equal(tell_of(&r, CYCLE_CONFIRM, ready), ANSWER_OVER);
+	assert_true(stand_asks(&r.c));
+	assert_int_equal(tell_of(&r, CYCLE_CONFIRM, seen), ANSWER_DONE);
+	assert_int_equal(tell_of(&r, CYCLE_START, ready), ANSWER_OVER);
+	assert_int_equal(r.c.state, STATE_HOLD);
+	assert_int_equal(tell_of(&r, CYCLE_START, seen), ANSWER_DONE);
+	steps(&r, SPARKING_V, 50);
+	assert_int_equal(tell_of(&r, CYCLE_START, seen), ANSWER_OVER);
+	assert_int_equal(tell(&r, CYCLE_HOLD), ANSWER_DONE);
+	steps(&r, SPARKING_V, 200);
+	assert_int_equal(r.c.state, STATE_HOLD);
+	assert_int_equal(tell_of(&r, CYCLE_START, seen), ANSWER_OVER);
+	steps(&r, SPARKING_V, 20);
+	assert_int_equal(r.c.state, STATE_HOLD);
+	assert_int_equal(tell_of(&r, CYCLE_START, seen + 1), ANSWER_DONE);
+	rig_free(&r);
+}
+
 static void nothing_that_comes_between_answers_for_it(void **st)
 {
 	struct rig r;
@@ -143,6 +178,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(only_its_own_number_answers_for_it),
+		cmocka_unit_test(an_answer_is_for_the_stand_that_was_seen),
 		cmocka_unit_test(nothing_that_comes_between_answers_for_it),
 		cmocka_unit_test(a_plc_confirms_what_it_was_told),
 		cmocka_unit_test(each_way_to_stand_has_its_reason),

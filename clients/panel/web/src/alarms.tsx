@@ -5,7 +5,7 @@ import type { JSX } from "preact";
 import { whyNot } from "./can";
 import { moment, number } from "./format";
 import { link } from "./link";
-import { Card, Key, PressKey, act } from "./parts";
+import { Card, Key, PressKey, act, standNow } from "./parts";
 import { hasWarning, stateLine, storeWhy } from "./stateline";
 import { useAsk } from "./use";
 import { faultWords, huntingWords, isWord, list, said, t } from "./words";
@@ -19,7 +19,7 @@ function kindWord(a: Alarm): string {
 interface Alarm { utime: number; kind: string; job: string; fault: string; place_mm: number; text: string }
 
 function Now(): JSX.Element {
-	const s = link.state, w = faultWords(s.fault);
+	const s = link.state, w = faultWords(s.fault), text = standNow();
 	const others = s.faults.split(" ").filter((f) => f && f !== s.fault);
 	if (s.fault === "none") return <Card title={t("alarms.now")}><p class="calm">{s.daemon === "ok" && link.connection === "open" ? t("alarms.none") : stateLine().why}</p></Card>;
 	return <Card title={t("alarms.now")} class="alarm-now">
@@ -28,7 +28,7 @@ function Now(): JSX.Element {
 			{others.length > 0 && <><dt>{t("alarms.others")}</dt><dd>{list(others.map((f) => faultWords(f).what))}</dd></>}
 			{s.job && <><dt>{t("alarms.where")}</dt><dd>{t("alarms.inline", { job: s.jobName, line: s.line, mm: number(s.place, 3) })}</dd></>}</dl>
 		<div class="keys"><Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key>
-			<PressKey id="start" why={whyNot("start")} onPress={() => void act("start", { job: link.state.job })}>{t("resume")}</PressKey></div>
+			<PressKey id="start" why={whyNot("start")} onPress={() => void act("start", { job: s.job, text })}>{t("resume")}</PressKey></div>
 		<p class="note">{t("alarms.resetgo")}</p>
 	</Card>;
 }

@@ -9,7 +9,7 @@ import { clock, duration, moment, number, parse, short } from "./format";
 import { ResumeSheet } from "./jobs";
 import { link, type Axis, type Point } from "./link";
 import { useLine } from "./lines";
-import { Card, Choice, Key, NumberField, PressKey, Sheet, Toasts, act } from "./parts";
+import { Card, Choice, Key, NumberField, PressKey, Sheet, Toasts, act, standNow } from "./parts";
 import { WorkChoice, useWork } from "./offsets";
 import { PathView } from "./pathview";
 import { TextSheet } from "./textview";
@@ -67,9 +67,11 @@ function Feed(p: { onOpen: () => void }): JSX.Element {
 	const span = Math.abs(s.feed) > most * 1.5 ? Math.max(v.retract_mm_s ?? 5, Math.abs(s.feed)) : most;
 	const share = Math.min(50, Math.abs(s.feed) / span * 50);
 	const height = link.hello?.height ?? 0;
+	// An axis that is homed or moved by hand is on no path.
+	const along = isKnown() && s.loaded;
 	const way = feed > 1e-4 ? "cut.forward" : feed < -1e-4 ? "cut.back" : "cut.still";
 	return <Card class="feed" label={t("cut.feed")}>
-		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{isKnown() ? number(feed, slow ? 2 : 0, true) : "\u2013"}</b> <u>mm/min</u> {isKnown() && <em>{height > 0 ? `${number(feed * height, 1, true)} mm\u00b2/min` : t(way)}</em>}</p></div>
+		<div class="reading"><h2><button type="button" onClick={p.onOpen}>{t("cut.feed")}</button></h2><p><b>{along ? number(feed, slow ? 2 : 0, true) : "\u2013"}</b> <u>mm/min</u> {along && <em>{height > 0 ? `${number(feed * height, 1, true)} mm\u00b2/min` : t(way)}</em>}</p></div>
 		<div class="bar feedbar" aria-hidden="true"><i class={s.feed < 0 ? "flow back" : "flow"} style={s.feed < 0 ? { right: "50%", width: `${share}%` } : { left: "50%", width: `${share}%` }} /><i class="zero" /></div>
 		<button type="button" class="stripkey" onClick={p.onOpen} aria-label={t("chart.feed")}>
 			<Strip points={link.points} at={4} colour="--done" label={t("chart.feed")} height={44} span={60} lines={[0]} clip={[-most * 1.2, most * 1.2]} /></button>
@@ -179,13 +181,13 @@ function Middle(p: { open: (what: string) => void }): JSX.Element {
 	if (s.state === "idle" && s.interrupted) return <Key id="resume" class="primary" why={whyNot("send")} onPress={() => p.open("resume")}>{t("jobs.resume")}</Key>;
 	if (s.state === "fault") return <Key id="reset" class="primary" why={whyNot("reset")} onPress={() => void act("reset")}>{t("reset")}</Key>;
 	if (!s.asks) return <Key id="hold" why={whyNot("hold")} onPress={() => void act("hold")}>{t("hold")}</Key>;
-	const electrode = s.stand === "electrode";
-	return <PressKey id="done" class="primary" why={whyNot("retract")} onPress={() => void act("done", { arg: electrode ? s.standOf : 0 })}>
+	const electrode = s.stand === "electrode", text = standNow();
+	return <PressKey id="done" class="primary" why={whyNot("retract")} onPress={() => void act("done", { arg: electrode ? s.standOf : 0, text })}>
 		{!electrode ? t("done.set") : s.standOf ? t("done.electrode", { n: s.standOf }) : t("done.empty")}</PressKey>;
 }
 
 function Foot(p: { open: (what: string) => void }): JSX.Element {
-	const s = link.state, held = s.state === "hold" && s.far > 0;
+	const s = link.state, held = s.state === "hold" && s.far > 0, text = standNow();
 	return <div class="bottom"><Toasts /><footer class="foot">
 		<div class="chips">{chips().map((c) => <button type="button" id={`chip-${c.id}`} class={`chip ${c.id === "override" && s.override === 0 ? "zero" : ""} ${s.set.some((f) => c.open.split(" ").includes(f)) ? "set" : ""}`} onClick={() => p.open(c.open)}>
 			<span>{c.label}</span><b>{c.text}</b></button>)}</div>
@@ -193,7 +195,7 @@ function Foot(p: { open: (what: string) => void }): JSX.Element {
 			<Key id="retract" why={whyNot("retract")} onPress={() => p.open("retract")}>{t("more")}</Key>
 			<Middle open={p.open} />
 			<PressKey id="start" class={isRunning() || s.asks ? "" : "primary"} why={whyNot("start")} note={isRunning() ? t("cut.runs") : undefined}
-				onPress={() => void act("start", { job: s.job })}>{t(held ? "resume" : "start")}</PressKey>
+				onPress={() => void act("start", { job: s.job, text })}>{t(held ? "resume" : "start")}</PressKey>
 		</div>
 	</footer></div>;
 }

@@ -32,7 +32,7 @@ export interface State {
 	lines: number; queue: number; eta: number; etaMin: number; etaMax: number; etaBy: string; etaCondition: string; etaFactor: number; end: number; queueS: number; queueUntold: number; queueEnd: number; progress: number;
 	store: string;
 	interrupted: string; lost: string; faults: string; hunts: number;
-	electrode: number; work: string; workTurn: number; workMm: number[]; pass: number; passes: number; wireOffset: number; stand: string; standOf: number; asks: boolean; asksFor: string;
+	electrode: number; work: string; workTurn: number; workMm: number[]; pass: number; passes: number; wireOffset: number; stand: string; standOf: number; standN: number; asks: boolean; asksFor: string;
 }
 
 // t ms, gap min mean max, feed min mean max, depth, state number
@@ -56,7 +56,7 @@ const EMPTY: State = {
 	values: {}, set: [], told: {}, generator_fault: "", jobs: false, job: "", jobName: "", jobState: "",
 	lines: 0, queue: 0, eta: -1, etaMin: -1, etaMax: -1, etaBy: "", etaCondition: "", etaFactor: 0, end: 0, queueS: 0, queueUntold: 0, queueEnd: 0, progress: 0,
 	store: "", interrupted: "", lost: "",
-	faults: "", hunts: 0, electrode: 0, work: "", workTurn: 0, workMm: [], pass: 0, passes: 0, wireOffset: 0, stand: "", standOf: 0, asks: false, asksFor: "",
+	faults: "", hunts: 0, electrode: 0, work: "", workTurn: 0, workMm: [], pass: 0, passes: 0, wireOffset: 0, stand: "", standOf: 0, standN: 0, asks: false, asksFor: "",
 };
 
 const POINTS_KEPT = 620;

@@ -48,7 +48,8 @@ export function PressKey(p: KeyProps): JSX.Element {
 		timer.current = window.setTimeout(() => {
 			timer.current = 0;
 			set(0);
-			if (!latest.current.why) latest.current.onPress();
+			// It is for what was shown when it began.
+			if (!latest.current.why) p.onPress();
 		}, PRESS_MS);
 	};
 	const end = () => {
@@ -185,6 +186,11 @@ export async function act(what: string, more: Record<string, unknown> = {}): Pro
 	const a = await link.ask(what, more);
 	if (a.code !== 0) say(a.reason === "connection" ? t("no.connection") : said(a.reason), true);
 	return a.code === 0;
+}
+
+/** The stand that is shown, for a press: it is for that one alone. */
+export function standNow(): string {
+	return link.state.stand ? String(link.state.standN) : "";
 }
 
 const paths: Record<string, string> = {

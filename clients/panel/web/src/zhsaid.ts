@@ -117,6 +117,8 @@ const SHORT: Record<string, string> = {
 	"edmd refused the value; it must be finite and in range": "edmd 不接受此值；须为范围内的有限数",
 	"it asks for something that nobody confirmed": "它要求的事还没有人确认",
 	"that is not asked for": "没有要求确认此事",
+	"the stand that it was for is over": "它所针对的停顿已经结束",
+	"that stand is over: somebody was quicker; look what the machine wants now": "那次停顿已经结束：有人更快；请看机床现在要什么",
 	"it cannot be checked: no memory, or the store failed": "无法检查：内存不足或存储失败",
 	"it has begun or ended; stop ends a job that runs": "它已开始或已结束；“停止”可结束运行中的任务",
 	"it is just being loaded; once more when it is ready": "正在载入；就绪后请再试",
