@@ -351,8 +351,10 @@ void interrupt_attach(struct jobs *j)
 	queue_wait(j);
 	jobs_note(j, &(struct jobs_note) { .kind = "waits" },
 		  "edmd was started anew, and nothing measures where the axes "
-		  "stand: last seen %s; see where the machine stands, then "
-		  "start", places);
+		  "stand: last seen %s; see where each stands: edmctl place "
+		  "AXIS as-seen if it was not moved, or place AXIS is MM; then "
+		  "edmctl resume JOB if one was interrupted, else edmctl start",
+		  places);
 }
 
 /* -- The job -------------------------------------------------------------- */

@@ -208,6 +208,23 @@ static void what_is_ignored_is_noted_once(void **state)
 	compile_done(&c);
 }
 
+/* M6 beside its T word is part of it: what is noted of T is true of both. */
+static void m6_beside_its_t_word_is_not_noted(void **state)
+{
+	static const char text[] = "T3 M6\nG0 X1\nM6\nM30\n";
+	struct compiled c = compile_ready("generic");
+	char all[512] = "";
+	const struct interp_notes notes = { note, all, false };
+
+	(void)state;
+	c.o.nc.notes = &notes;
+	compile_bytes(&c, text, sizeof(text) - 1);
+	assert_int_equal(c.rc, 0);
+	assert_string_equal(all,
+			    "1 T3 shifts nothing: t|3 M6 changes nothing: |");
+	compile_done(&c);
+}
+
 /* A % ends the text, but only where it is alone. */
 static void words_behind_the_end_are_noted(void **state)
 {
@@ -279,6 +296,7 @@ int main(void)
 		cmocka_unit_test(a_rule_changes_what_numbers_mean),
 		cmocka_unit_test(a_mistake_in_a_file_is_refused_at_its_place),
 		cmocka_unit_test(what_is_ignored_is_noted_once),
+		cmocka_unit_test(m6_beside_its_t_word_is_not_noted),
 		cmocka_unit_test(words_behind_the_end_are_noted),
 		cmocka_unit_test(what_others_read_otherwise_is_noted_before_a_run),
 		cmocka_unit_test(a_work_offset_is_written_by_the_program),

@@ -238,7 +238,9 @@ int nc_run_electrode_change(struct nc_reader *r)
 	const uint8_t *at = r->block.code_at[NC_ELECTRODE_CHANGE];
 	const int err = r->next == r->electrode ? 0 : check(r, at);
 
-	if (r->next == r->electrode)
+	/* A T word beside it has said what comes of both. */
+	if (r->next == r->electrode &&
+	    !(r->block.groups & NC_BIT(NC_ELECTRODE)))
 		nc_note_electrode(r, NC_ELECTRODE_CHANGE, "changes nothing: "
 				  "no T word called another electrode");
 	return err ? err : change(r, true, at);
