@@ -9,6 +9,7 @@ import os
 import pathlib
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -29,11 +30,14 @@ class Hook:
 
     def __init__(self):
         self.got, self.broken = [], False
+        self.does = None        # instead of an answer, for a message
         outer = self
 
         class Handler(http.server.BaseHTTPRequestHandler):
             def do_POST(self):
                 body = self.rfile.read(int(self.headers["Content-Length"]))
+                if outer.does and outer.does(self, json.loads(body)):
+                    return
                 if not outer.broken:
                     outer.got.append(json.loads(body))
                 self.send_response(503 if outer.broken else 204)
@@ -272,6 +276,80 @@ def test_a_hook_that_fails_gets_it_later(shop, hook):
         rig.until(lambda: "is there again" in said(shop))
 
 
+def test_a_redirect_is_no_answer(shop, hook):
+    """Followed, the call would be a GET, and nobody would be called."""
+    def elsewhere(h, _):
+        h.send_response(302)
+        h.send_header("Location", hook.url + "/new")
+        h.end_headers()
+        return True
+
+    hook.does = elsewhere
+    with notify(shop, f"[to.me]\nurl = {hook.url}"):
+        change(shop)
+        rig.until(lambda: f"redirects to {hook.url}/new" in said(shop), 30)
+        hook.does = None
+        hook.until("stands", timeout=60)
+
+
+def test_one_that_is_refused_keeps_back_no_other(shop, hook):
+    def refuses(h, m):
+        if m["kind"] == "stands":
+            h.send_error(400)
+        return m["kind"] == "stands"
+
+    hook.does = refuses
+    with notify(shop, f"[to.me]\nurl = {hook.url}"):
+        change(shop)
+        rig.until(lambda: "400" in said(shop), 30)
+        go_on(shop)
+        hook.until("done", timeout=60)
+        hook.does = None
+        hook.until("stands", timeout=60)
+
+
+def test_a_way_without_end_is_given_up_and_tried_again(shop, hook, tmp_path):
+    """A hook that answers a byte a second, a broker that takes the connection
+    and says nothing, a command that waits for another one."""
+    over = threading.Event()
+
+    def drips(h, _):
+        while not over.wait(1):
+            h.wfile.write(b"H")
+        return True
+
+    hook.does = drips
+    script, pid = tmp_path / "call", tmp_path / "pid"
+    script.write_text(f"#!/bin/sh\nsleep 1000 & echo $! > {pid}; wait\n")
+    script.chmod(0o755)
+    with socket.create_server(("127.0.0.1", 0)) as mute:
+        to = (f"[to.hook]\nurl = {hook.url}\n"
+              f"[to.broker]\nurl = mqtt://127.0.0.1:"
+              f"{mute.getsockname()[1]}/edm\n"
+              f"[to.command]\nurl = command:{script}")
+        with notify(shop, to):
+            change(shop)
+            for name in ("hook", "broker", "command"):
+                rig.until(lambda n=name: f"{n}: not sent, goes on trying: no "
+                          "end of it" in said(shop), 60)
+            other = int(pid.read_text())
+            hook.does = None
+            over.set()
+            hook.until("stands", timeout=60)
+    rig.until(lambda: not pathlib.Path(f"/proc/{other}").exists(), 30)
+
+
+@pytest.mark.parametrize("left", ["[{}]", "[]", "{", "[1]", '{"a": []}', ""])
+def test_what_is_left_in_a_file_ends_nothing(shop, hook, left):
+    state = shop.folder / "state"
+    state.mkdir()
+    for name in ("told", "later", "waits-me"):
+        (state / f"{name}.json").write_text(left)
+    with notify(shop, f"[to.me]\nurl = {hook.url}"):
+        shop.client.ask("estop")
+        hook.until("fault")
+
+
 def test_a_command_works_without_apprise_and_paho(shop, tmp_path):
     out = tmp_path / "called"
     script = tmp_path / "call"
@@ -326,6 +404,19 @@ def test_who_does_not_answer_is_told(shop, hook):
     ("quiet = 25:00-6\n[to.a]\nurl = http://x/", "two times of the day"),
     ("repeat_min = often\n[to.a]\nurl = http://x/", "often"),
     ("[to.a", "README.md"),
+    ("repeat_mins = 5\n[to.a]\nurl = http://x/", "repeat_mins: no such key"),
+    ("[to.a]\nurl = http://x/\nkind = fault", "kind: no such key"),
+    ("[To.a]\nurl = http://x/", "[To.a]: no such section"),
+    ("[to]\nurl = http://x/", "[to]: no such section"),
+    ("[to.a]\nurl = http://x/\nkinds =", "some of fault"),
+    ("repeat_min = nan\n[to.a]\nurl = http://x/", "repeat_min = nan"),
+    ("repeat_min = -1\n[to.a]\nurl = http://x/", "repeat_min = -1"),
+    ("quiet = 22:75-6\n[to.a]\nurl = http://x/", "two times of the day"),
+    ("[to.a]\nurl = http:///path", "without a host"),
+    ("[to.a]\nurl = http://[::1/", "http: "),
+    ("[to.a]\nurl = mqtt://x:99999/edm", "mqtt: "),
+    ("[to.a]\nurl = command:/no/such/program", "that can be run"),
+    ('[to.a]\nurl = command:"sh', "command: "),
 ])
 def test_a_file_that_is_wrong_is_refused(tmp_path, text, says):
     config = tmp_path / "notify.ini"

@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import argparse
 import configparser
-import contextlib
 import importlib
 import json
+import math
 import os
 import shlex
+import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -25,7 +27,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn, TypeVar
 from urllib.parse import quote, urlsplit
 
 from .client import Client, NoAnswer, Refused
@@ -38,6 +40,9 @@ OWN_STANDS = ("", "ready", "held", "reset")
 SEND_S, SILENT_S = 15.0, 10.0
 AGAIN_S, AGAIN_MAX_S = 5.0, 300.0
 WAITING_MAX, TEXT_MAX = 200, 1000
+
+
+T = TypeVar("T")
 
 
 class Wrong(Exception):
@@ -63,10 +68,10 @@ class Kept:
     cause only the last one waits."""
 
     def __init__(self, path: Path) -> None:
-        self.path, self.waits = path, OrderedDict[str, Message]()
-        with contextlib.suppress(OSError, ValueError, TypeError):
-            for one in json.loads(path.read_text()):
-                self.waits[one["cause"]] = Message(**one)
+        self.path = path
+        self.waits: OrderedDict[str, Message] = kept_in(
+            path, lambda all: OrderedDict((one["cause"], Message(**one))
+                                          for one in all), OrderedDict())
 
     def put(self, m: Message, whose: str) -> None:
         """The oldest is given up if too many wait."""
@@ -82,10 +87,26 @@ class Kept:
             del self.waits[m.cause]
             self.write()
 
+    def put_off(self, m: Message) -> None:
+        """The others first: a way may refuse this one alone."""
+        if m.cause in self.waits:
+            self.waits.move_to_end(m.cause)
+
     def write(self) -> None:
         """Whole or not at all."""
         write_file(self.path, [asdict(m) for m in self.waits.values()],
                    "what waits is lost if this ends")
+
+
+def kept_in(path: Path, of: Callable[[Any], T], nothing: T) -> T:
+    """What an earlier run has left, by @of."""
+    try:
+        return of(json.loads(path.read_text()))
+    except FileNotFoundError:
+        return nothing
+    except Exception as e:  # whatever is in it
+        say(f"{path}: not read, begins anew: {type(e).__name__}: {e}")
+        return nothing
 
 
 def write_file(path: Path, what: Any, otherwise: str) -> None:
@@ -103,23 +124,36 @@ def write_file(path: Path, what: Any, otherwise: str) -> None:
 
 def _command(line: str) -> Callable[[Message], None]:
     words = shlex.split(line)
-    if not words:
-        raise Wrong("command: without a program; command:/path/program")
+    if not words or not shutil.which(words[0]):
+        raise Wrong("command: without a program that can be run; "
+                    "command:/path/program")
 
     def send(m: Message) -> None:
         subprocess.run(
             words, input=json.dumps(asdict(m)), text=True, check=True,
-            timeout=SEND_S, env=os.environ | {
+            stdout=sys.stderr, env=os.environ | {
                 "EDM_" + k.upper(): str(v) for k, v in asdict(m).items()})
     return send
 
 
+class _Stays(urllib.request.HTTPRedirectHandler):
+    """A redirect would make a GET of it, which calls nobody."""
+
+    def redirect_request(self, *a: Any) -> NoReturn:
+        raise OSError(f"it redirects to {a[-1]}; write that into url")
+
+
 def _webhook(url: str) -> Callable[[Message], None]:
+    if not urlsplit(url).hostname:
+        raise Wrong(f"{urlsplit(url).scheme}: without a host; "
+                    "https://HOST/path")
+    opener = urllib.request.build_opener(_Stays)
+
     def send(m: Message) -> None:
         r = urllib.request.Request(
             url, json.dumps(asdict(m)).encode(),
             {"Content-Type": "application/json"})
-        with urllib.request.urlopen(r, timeout=SEND_S):
+        with opener.open(r, timeout=SEND_S):
             pass
     return send
 
@@ -130,6 +164,8 @@ def _mqtt(url: str) -> Callable[[Message], None]:
     if not at.hostname or not topic or set(url) & set("+#"):
         raise Wrong(f"{at.scheme}://{at.hostname or ''}/{topic}: an address "
                     "and a topic without + and #; mqtt://HOST/shop/edm")
+    tls = at.scheme == "mqtts"
+    port = at.port or (8883 if tls else 1883)
     auth = ({"username": at.username, "password": at.password}
             if at.username else None)
     try:
@@ -140,9 +176,8 @@ def _mqtt(url: str) -> Callable[[Message], None]:
 
     def send(m: Message) -> None:
         publish.single(topic, json.dumps(asdict(m)), qos=1,
-                       hostname=at.hostname, auth=auth, port=at.port or
-                       (8883 if at.scheme == "mqtts" else 1883),
-                       tls={} if at.scheme == "mqtts" else None)
+                       hostname=at.hostname, auth=auth, port=port,
+                       tls={} if tls else None)
     return send
 
 
@@ -166,12 +201,45 @@ def _apprise(url: str) -> Callable[[Message], None]:
 
 def way_of(url: str) -> Callable[[Message], None]:
     """How to send to this URL.  Raises Wrong."""
-    if url.startswith("command:"):
-        return _command(url[len("command:"):])
-    if url.startswith(("http://", "https://")):
-        return _webhook(url)
-    return _mqtt(url) if url.startswith(("mqtt://", "mqtts://")) else \
-        _apprise(url)
+    try:
+        if url.startswith("command:"):
+            return _command(url[len("command:"):])
+        if url.startswith(("http://", "https://")):
+            return _webhook(url)
+        return _mqtt(url) if url.startswith(("mqtt://", "mqtts://")) else \
+            _apprise(url)
+    except ValueError as e:
+        raise Wrong(f"{url.partition(':')[0]}: {e}; README.md of the package "
+                    "has the ways") from None
+
+
+def attempt(url: str, m: Message) -> None:
+    """Try it, in a process of its own: whatever the way does, it is over after
+    SEND_S."""
+    with subprocess.Popen([sys.executable, "-m", "edm.notify", "--send"],
+                          stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                          text=True, start_new_session=True) as p:
+        try:
+            said, _ = p.communicate(json.dumps([url, asdict(m)]), SEND_S)
+        except subprocess.TimeoutExpired:
+            raise OSError(f"no end of it after {SEND_S:.0f} s") from None
+        finally:
+            if p.poll() is None:
+                os.killpg(p.pid, signal.SIGKILL)
+    if p.returncode:
+        raise OSError(said.strip() or f"it ended with {p.returncode}")
+
+
+def send_one() -> int:
+    """The other side of attempt(), which may have been killed."""
+    signal.alarm(int(2 * SEND_S))
+    url, m = json.load(sys.stdin)
+    try:
+        way_of(url)(Message(**m))
+    except Exception as e:  # whatever a service has to say
+        print(f"{type(e).__name__}: {e}")
+        return 1
+    return 0
 
 
 class Target:
@@ -180,8 +248,8 @@ class Target:
 
     def __init__(self, name: str, url: str, kinds: tuple[str, ...],
                  state: Path) -> None:
-        self.name, self.kinds = name, kinds
-        self._send = way_of(url)
+        self.name, self.kinds, self._url = name, kinds, url
+        way_of(url)
         self._kept = Kept(state / f"waits-{quote(name, safe='')}.json")
         self._new, self._down = threading.Condition(), False
         threading.Thread(target=self._run, daemon=True).start()
@@ -196,11 +264,10 @@ class Target:
 
     def _try(self, m: Message) -> bool:
         try:
-            self._send(m)
-        except Exception as e:  # whatever a service has to say
+            attempt(self._url, m)
+        except OSError as e:
             if not self._down:
-                say(f"{self.name}: not sent, goes on trying: "
-                    f"{type(e).__name__}: {e}")
+                say(f"{self.name}: not sent, goes on trying: {e}")
             self._down = True
             return False
         if self._down:
@@ -220,6 +287,8 @@ class Target:
                 with self._new:
                     self._kept.drop(m)
             else:
+                with self._new:
+                    self._kept.put_off(m)
                 time.sleep(pause)
                 pause = min(pause * 2, AGAIN_MAX_S)
 
@@ -288,15 +357,10 @@ class Caller:
 
     def __init__(self, rules: Rules, targets: list[Target]) -> None:
         self.rules, self.targets = rules, targets
-        self.told: dict[str, Told] = {}
         self.later = Kept(rules.file("later.json"))     # of quiet hours
-        self._read()
-
-    def _read(self) -> None:
-        with contextlib.suppress(OSError, ValueError, TypeError):
-            old = json.loads(self.rules.file("told.json").read_text())
-            self.told = {k: Told(float(v[0]), bool(v[1]))
-                         for k, v in old.items()}
+        self.told: dict[str, Told] = kept_in(
+            rules.file("told.json"), lambda all: {
+                k: Told(float(v[0]), bool(v[1])) for k, v in all.items()}, {})
 
     def _write(self) -> None:
         write_file(self.rules.file("told.json"), {
@@ -326,7 +390,8 @@ class Caller:
             if quiet and m.kind not in self.rules.always:
                 continue
             every = self.rules.repeat_s
-            if t and (t.seen or every <= 0 or now - t.at < every):
+            # The clock may have been set back meanwhile.
+            if t and (t.seen or every <= 0 or 0 <= now - t.at < every):
                 continue
             self.told[cause] = Told(now)
             self._put(m)
@@ -367,19 +432,38 @@ class Rules:
 
 
 def _minute(text: str) -> int:
-    hour, _, minute = text.strip().partition(":")
-    at = int(hour) * 60 + int(minute or 0)
-    if not 0 <= at <= 24 * 60:
+    hour, minute = (int(n) for n in (text + ":0").split(":")[:2])
+    if not (0 <= minute < 60 and 0 <= hour * 60 + minute <= 24 * 60):
         raise ValueError
-    return at
+    return hour * 60 + minute
 
 
 def _kinds(where: str, text: str) -> tuple[str, ...]:
     found = tuple(text.replace(",", " ").split())
-    for k in found:
+    for k in found or ("",):
         if k not in KINDS:
             raise Wrong(f"{where}: '{k}'; some of {' '.join(KINDS)}")
     return found
+
+
+def _repeat_s(text: str) -> float:
+    minutes = float(text)
+    if not (math.isfinite(minutes) and minutes >= 0):
+        raise ValueError(f"repeat_min = {text}; minutes, or 0: once")
+    return 60 * minutes
+
+
+def _known(c: configparser.ConfigParser) -> None:
+    """A word that is not known was meant to be another one."""
+    keys = {"notify": ("machine", "key", "page", "repeat_min", "quiet",
+                       "always", "state"), "to": ("url", "kinds")}
+    for s in c.sections():
+        known = keys.get(s, keys["to"] if s.startswith("to.") else None)
+        if known is None or s == "to":
+            raise Wrong(f"[{s}]: no such section; [notify], and [to.NAME] for "
+                        "each who is called")
+        for key in set(c[s]) - set(c.defaults()) - set(known):
+            raise Wrong(f"[{s}] {key}: no such key; {' '.join(known)}")
 
 
 def _quiet(text: str) -> tuple[int, int] | None:
@@ -399,12 +483,13 @@ def read_file(path: str) -> tuple[Rules, dict[str, tuple[str, Any]]]:
     try:
         with open(path, encoding="utf-8") as f:
             c.read_file(f)
+        _known(c)
         n = c["notify"] if "notify" in c else c["DEFAULT"]
         rules = Rules(
             n.get("machine", "edm"), n.get("key"), n.get("page", ""),
-            60 * n.getfloat("repeat_min", fallback=10.0),
+            _repeat_s(n.get("repeat_min", "10")),
             _quiet(n.get("quiet", "")),
-            _kinds("[notify] always", n.get("always", "")),
+            _kinds("[notify] always", n["always"]) if "always" in n else (),
             Path(n.get("state", "") or os.environ.get(
                 "RUNTIME_DIRECTORY", "/run/edm-notify")))
         to = {s[3:]: (c[s]["url"], _kinds(f"[{s}] kinds", c[s].get(
@@ -483,15 +568,14 @@ def try_all(path: str) -> int:
     failed = 0
     for name, (url, _) in to.items():
         try:
-            way_of(url)(Message(
+            way_of(url)
+            attempt(url, Message(
                 "test", "done", rules.machine, "", f"{rules.machine}: test",
                 "edm-notify calls you when the machine needs a person",
                 rules.page, time.time_ns() // 1000))
             print(f"{name}: sent")
-        except Wrong:
-            raise
-        except Exception as e:  # whatever a service has to say
-            print(f"{name}: {type(e).__name__}: {e}")
+        except OSError as e:
+            print(f"{name}: {e}")
             failed = 1
     return failed
 
@@ -504,8 +588,11 @@ def main() -> int:
                    help="call everybody once, and end")
     p.add_argument("--seen", action="store_true",
                    help="somebody is on the way: repeat nothing that was told")
+    p.add_argument("--send", action="store_true", help=argparse.SUPPRESS)
     a = p.parse_args()
     try:
+        if a.send:
+            return send_one()
         if a.seen:
             read_file(a.config)[0].file("seen").touch()
             return 0
