@@ -118,21 +118,21 @@ static void shared_structs_keep_their_size(void **state)
 {
 	(void)state;
 	assert_int_equal(sizeof(struct shm_head), 56);
-	assert_int_equal(sizeof(struct shm_snapshot), 1032);
+	assert_int_equal(sizeof(struct shm_snapshot), 1064);
 	assert_int_equal(sizeof(struct shm_trace), 136);
 	assert_int_equal(sizeof(struct shm_trace_slot), 144);
 	assert_int_equal(sizeof(struct shm_event), 64);
 	assert_int_equal(sizeof(struct shm_event_slot), 72);
-	assert_int_equal(sizeof(struct shm_snap), 1040);
+	assert_int_equal(sizeof(struct shm_snap), 1072);
 	assert_int_equal(sizeof(struct shm_sets_slot), 1048);
 	assert_int_equal(sizeof(struct shm_drives), 1272);
 	assert_int_equal(sizeof(struct shm_command), 40);
 	assert_int_equal(sizeof(struct shm_done_slot), 24);
 	assert_int_equal(sizeof(struct shm_ended_slot), 136);
 	assert_int_equal(offsetof(struct shm_status, trace),
-			 8888 + 256 * 24 + 64 * 136);
+			 8952 + 256 * 24 + 64 * 136);
 	assert_int_equal(sizeof(struct shm_status),
-			 8888 + 256 * 24 + 64 * 136 + 16384 * 144 + 1024 * 72);
+			 8952 + 256 * 24 + 64 * 136 + 16384 * 144 + 1024 * 72);
 }
 
 static void names_are_those_of_the_cycle(void **state)
