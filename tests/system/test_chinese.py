@@ -90,20 +90,60 @@ def asked():
             ("", "not before this: ", "that is not what the machine asks for: ")}
 
 
-@pytest.mark.skipif(not (WEB / "node_modules").is_dir(),
-                    reason="the page was not built here")
-def test_what_is_refused_is_told_in_chinese(tmp_path):
+def shown(tmp_path, function, whole):
+    """What the page's own function makes of each."""
     made = tmp_path / "said.cjs"
     subprocess.run([WEB / "node_modules/.bin/esbuild", "--bundle",
                     "--format=cjs", "--log-level=error", f"--outfile={made}",
-                    WEB / "src/zhsaid.ts"], check=True, timeout=120)
-    whole = sentences()
-    assert len(whole) > 60
+                    WEB / "src/zh{}.ts".format(
+                        {"zhSaid": "said", "zhRefused": "nc"}[function])],
+                   check=True, timeout=120)
     r = subprocess.run(
-        ["node", "-e", f"const {{ zhSaid }} = require('{made}'); console.log("
-         "JSON.stringify(JSON.parse(process.argv[1]).map(zhSaid)))",
+        ["node", "-e", f"const f = require('{made}').{function}; console.log("
+         "JSON.stringify(JSON.parse(process.argv[1]).map((x) => f(x))))",
          json.dumps(whole)], capture_output=True, text=True, check=True,
         timeout=60)
-    english = [a for a, b in zip(whole, json.loads(r.stdout))
-               if not re.search("[\u4e00-\u9fff]", b) or b == a]
-    assert english == []
+    return json.loads(r.stdout)
+
+
+def english(whole, put):
+    return [a for a, b in zip(whole, put, strict=True)
+            if not re.search("[\u4e00-\u9fff]", b) or b == a]
+
+
+built = pytest.mark.skipif(not (WEB / "node_modules").is_dir(),
+                           reason="the page was not built here")
+
+
+@built
+def test_what_is_refused_is_told_in_chinese(tmp_path):
+    whole = sentences()
+    assert len(whole) > 60
+    assert english(whole, shown(tmp_path, "zhSaid", whole)) == []
+
+
+# What goes wrong in most programs; a line of its own each.
+WRONG = """G1 X5 Q77|G1 X5 F0|G0 X5000|C999|G2 X5 Y5 I1 F60|G2 X5 Y5 F60|G2 X5 R1 F60
+G77 X5|M77|X5|G0 XX5|G0 X5 X6|G0 G1 X5|M98 P5|M99|G4|G54 G0 B5|G0 W5|#1=5
+(comment|G0 X1.2.3|G28|G80 X|G1 Z-1 F-5|S500|G4 P-1|T99999|G92|G53|G1 Z-1 F60 R5
+G41 D1 G1 X5 F60|M98 P1\\nM30\\nO1\\nM98 P1\\nM99|O1\\nG0 X1\\nO1\\nM99"""
+
+
+@built
+def test_what_is_wrong_in_a_program_is_told_in_chinese(tmp_path):
+    whole = set()
+    for text in re.split(r"[|\n]", WRONG):
+        path = tmp_path / "part.ngc"
+        path.write_text(text.replace("\\n", "\n") + "\nM30\n")
+        r = subprocess.run(
+            [WEB.parent / "edmsim", "--machine", ROOT / "examples/machine.ini",
+             "--tech", ROOT / "examples/copper-steel.tech", "--check", path],
+            capture_output=True, text=True, timeout=60)
+        first, = re.findall(r"\d: error: (.*?); (.*)", r.stderr)[:1]
+        whole |= set(first)
+    whole = sorted(whole)
+    assert len(whole) > 45
+    assert english(whole, shown(tmp_path, "zhRefused", whole)) == []
+    said = "part.ngc:3:7: Q77 has no use on this line; I and J, or R"
+    put, = shown(tmp_path, "zhSaid", [said])
+    assert put == "part.ngc，第 3 行第 7 列：Q77 在此行没有用处；接受的是：须有 I 和 J，或 R"

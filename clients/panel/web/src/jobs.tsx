@@ -15,7 +15,7 @@ import { PathView } from "./pathview";
 import { Picture } from "./picture";
 import { TextSheet } from "./textview";
 import { save, say, useAsk, usePages } from "./use";
-import { faultWords, fieldWord, jobWord, list, said, t } from "./words";
+import { faultWords, fieldWord, jobWord, list, refused, said, t } from "./words";
 
 interface Checked { ok: boolean; where?: string; line: number; column: number; found: string; wanted: string; check?: string; lines?: number; length?: number; cut?: number; rapid?: number }
 interface Draft { name: string; text: string; file: File | null; checked: Checked | null; busy: string; line: string; set: Record<string, string> }
@@ -172,7 +172,7 @@ function New(): JSX.Element {
 		<div class="verdict" role="status" aria-live="polite">
 			{d.busy && <p>{d.busy}</p>}
 			{!d.busy && c?.ok && <p class="good">{t("jobs.ok", { lines: c.lines ?? 0, mm: number(c.length ?? 0, 2) })} {t("jobs.sum", { cut: number(c.cut ?? 0, 2), rapid: number(c.rapid ?? 0, 2) })}</p>}
-			{!d.busy && c && !c.ok && <div class="refusal"><b>{c.line > 0 ? t("jobs.errorat", { line: c.line, column: c.column }) : c.where}</b><p>{c.found}</p><p><i>{t("pair", { what: t("jobs.accepted"), is: "" })}</i> {c.wanted}</p></div>}
+			{!d.busy && c && !c.ok && <div class="refusal"><b>{c.line > 0 ? t("jobs.errorat", { line: c.line, column: c.column }) : c.where}</b><p>{refused(c.found)}</p><p><i>{t("pair", { what: t("jobs.accepted"), is: "" })}</i> {refused(c.wanted)}</p></div>}
 		</div>
 		{link.hello?.process === 1 && <Setting draft={d} />}
 		<div class="keys end"><NumberField id="fromline" label={t("jobs.line")} value={d.line} onInput={(line) => put({ ...d, line })} />

@@ -7,6 +7,7 @@
 import machine from "./machine.json";
 import { settings } from "./use";
 import { zh, zhFaults, zhFields, zhHunting } from "./zh";
+import { zhRefused } from "./zhnc";
 import { zhSaid } from "./zhsaid";
 
 export const en = {
@@ -262,6 +263,11 @@ export function list(of: string[]): string {
 /** What the machine said in a sentence of its own, as far as it is known. */
 export function said(text: string): string {
 	return settings.language === "zh-CN" ? zhSaid(text) : keys(text);
+}
+
+/** What was found in a program, or what is accepted. */
+export function refused(text: string): string {
+	return settings.language === "zh-CN" ? zhRefused(text) : text;
 }
 
 export function isWord(word: string): word is Word {

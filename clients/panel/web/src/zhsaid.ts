@@ -4,6 +4,7 @@
 // events, who did what, and what is refused most often.  What is not known here is
 // shown as it was said.
 import { zhFaults, zhHunting } from "./zh";
+import { zhRefused } from "./zhnc";
 
 type Put = string | ((...m: string[]) => string);
 
@@ -63,6 +64,7 @@ const TOLD: [RegExp, Put][] = [
 	[/^fault (\S+?)( \(.*\))? without a job; reset leaves it$/, (_, f, own) => `没有任务时：${faultOf(f as string)}${own ?? ""}；复位即可`],
 	[/^(\S+) \((\w+), ([^)]*)\): (\S+)(.*): ([^:]*)$/, (_, user, role, from, verb, what, became) => `${user}（${ROLES[role as string] ?? role}，${from}）：${VERBS[verb as string] ?? verb}${what}：${zhSaid(became as string)}`],
 	[/^(\S+) \((\w+)\): sent job (\S+), (.*): ([^:]*)$/, (_, user, role, _id, job, became) => `${user}（${ROLES[role as string] ?? role}）：发送任务 ${job}：${zhSaid(became as string)}`],
+	[/^(?:(\S+):)?(\d+):(\d+): (.*?); (.*)$/, (_, name, line, at, found, wanted) => `${name ? `${name}，` : ""}第 ${line} 行第 ${at} 列：${zhRefused(found as string)}；接受的是：${zhRefused(wanted as string)}`],
 	[/^accepted; /, "已接收；"], [/it will wait for start$/, "等待启动"], [/it starts now$/, "现在开始"],
 	[/it starts when those before it are done$/, "前面的完成后开始"], [/the queue waits for start$/, "队列等待启动"],
 	[/^(\S+) \((\w+), ([^)]*)\): jog-on (\w+) (begins|ends)$/, (_, user, role, from, axis, how) => `${user}（${ROLES[role as string] ?? role}，${from}）：按住点动 ${axis} ${how === "begins" ? "开始" : "结束"}`],
@@ -117,6 +119,7 @@ const SHORT: Record<string, string> = {
 	"edmd refused the value; it must be finite and in range": "edmd 不接受此值；须为范围内的有限数",
 	"it asks for something that nobody confirmed": "它要求的事还没有人确认",
 	"that is not asked for": "没有要求确认此事",
+	"text is the number of a stand, or empty": "text 须为停顿的编号，或为空",
 	"the stand that it was for is over": "它所针对的停顿已经结束",
 	"that stand is over: somebody was quicker; look what the machine wants now": "那次停顿已经结束：有人更快；请看机床现在要什么",
 	"it cannot be checked: no memory, or the store failed": "无法检查：内存不足或存储失败",
