@@ -308,6 +308,28 @@ def test_one_that_is_refused_keeps_back_no_other(shop, hook):
         hook.until("stands", timeout=60)
 
 
+def test_many_stands_one_behind_the_other_are_told_once_each(shop, hook):
+    """Somebody goes on at once, and edm-notify is killed in the middle."""
+    lines = b"".join(b"G0 Z%d\nM0\n" % (n % 2) for n in range(30))
+    to = f"[to.me]\nurl = {hook.url}"
+    with notify(shop, to, ends=signal.SIGKILL):
+        shop.client.submit(b"G21 G90 F600\n" + lines + b"M30\n", "many")
+        for n in range(15):
+            shop.client.status_where(lambda s, n=n: s.stand == "stop" and
+                                     s.line == 2 * n + 3, 20)
+            assert shop.client.ask("start").code == 0
+        hook.until("stands", 3)
+    with notify(shop, to):
+        for n in range(15, 30):
+            shop.client.status_where(lambda s, n=n: s.stand == "stop" and
+                                     s.line == 2 * n + 3, 20)
+            assert shop.client.ask("start").code == 0
+        hook.until("done", timeout=60)
+    told = [m["text"] for m in hook.got]
+    # What was just sent when it was killed may come again.
+    assert len(told) - len(set(told)) <= 1, told
+
+
 def test_a_way_without_end_is_given_up_and_tried_again(shop, hook, tmp_path):
     """A hook that answers a byte a second, a broker that takes the connection
     and says nothing, a command that waits for another one."""
