@@ -160,6 +160,18 @@ def test_a_part_from_its_error_to_the_history(p, page):
         assert f.read() == table.stdout.replace("\n", "\r\n")
 
 
+def test_an_axis_that_is_moved_by_hand_has_no_feed_along_a_path(p, page):
+    end_job(page, p)
+    show(page, "cut")
+    feed = page.locator(".feed .reading")
+    client = p.machine.client
+    assert client.ask("jog", text="X", arg=20).code == 0
+    expect(feed.locator("b")).to_have_text("\u2013")
+    expect(feed.locator("em")).to_have_count(0)
+    assert client.ask("jog", text="X", arg=-20).code in (0, 1)
+    client.status_where(lambda s: s.state == "idle", 60)
+
+
 def test_an_axis_is_jogged_by_steps(p, page):
     page.goto(p.url + "/#/setup")
     before = p.machine.client.status().pos_mm[0]
