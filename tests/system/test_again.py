@@ -78,6 +78,12 @@ def test_interrupted_again_it_goes_on_where_it_was(idle):
 def test_who_says_that_the_axes_are_where_they_were(idle):
     m, c = idle, idle.client
     interrupted(m, c, 1, LONG_JOB)
+    # What it says is accepted: a start alone is not.
+    waits = c.heard(lambda: [e.text for e in c.events if e.kind == "waits"
+                             and "nothing measures" in e.text])[0]
+    assert "edmctl resume JOB if one was interrupted" in waits
+    a = c.ask("start")
+    assert a.code == 1 and "resume it or remove it" in a.reason
     a = c.ask("resume", "cut")
     assert a.code == 1 and "not certain" in a.reason and "X" in a.reason
     a = c.ask("resume", "cut", text="X")
