@@ -103,7 +103,7 @@ function TimeNote(): JSX.Element | null {
 	const s = link.state, words: string[] = [];
 	if (s.eta < 0) return null;
 	if (s.end > 0) words.push(t("time.end", { at: s.end * 1000 - Date.now() > 20 * 3600e3 ? moment(s.end * 1000) : clock(s.end * 1000) }));
-	const what = s.etaCondition || t("time.cutting"), of = number(s.etaFactor, 2);
+	const what = s.etaCondition === "positioning" ? t("time.positioning") : s.etaCondition || t("time.cutting"), of = number(s.etaFactor, 2);
 	if (s.etaBy === "forecast") words.push(t("time.forecast"));
 	else if (s.etaBy === "learnt") words.push(t("time.learnt", { what, of }));
 	else if (Math.abs(s.etaFactor - 1) > 0.1) words.push(t("time.cut", { what, of }));

@@ -87,7 +87,7 @@ export const en = {
 	"cut.servo": "servo", "cut.servochip": "Servo", "cut.runs": "runs already", "cut.open": "open", "cut.sparks": "sparks on",
 	"cut.nosparks": "sparks off", "cut.back": "back", "cut.forward": "forward",
 	"cut.still": "still", "cut.togo": "to go", "cut.depth": "Depth", "cut.deepest": "deepest {mm}", "cut.lean": "Wire leans", "cut.height": "Work height", "cut.done": "Done",
-	"time.end": "ends {at}", "time.forecast": "by forecast", "time.cutting": "cutting", "time.and": ", ",
+	"time.end": "ends {at}", "time.forecast": "by forecast", "time.cutting": "cutting", "time.positioning": "positioning", "time.and": ", ",
 	"time.cut": "{what} takes {of} times its forecast", "time.learnt": "as learnt: {what} takes {of} times its forecast",
 	"cut.left": "Left", "cut.jumps": "Jumps", "cut.retracts": "Retracts",
 	"cut.shorts": "Shorts", "cut.time": "Time", "cut.line": "line", "cut.nojob": "No program",

@@ -78,7 +78,7 @@ export const zh: Record<Word, string> = {
 	"cut.open": "开路", "cut.sparks": "放电中", "cut.nosparks": "不放电", "cut.back": "后退",
 	"cut.forward": "前进", "cut.still": "静止", "cut.togo": "剩余", "cut.depth": "深度", "cut.deepest": "最深 {mm}", "cut.lean": "丝倾斜", "cut.height": "工件高度",
 	"cut.done": "进度", "cut.left": "剩余时间",
-	"time.end": "{at} 结束", "time.forecast": "按预测", "time.cutting": "加工", "time.and": "，",
+	"time.end": "{at} 结束", "time.forecast": "按预测", "time.cutting": "加工", "time.positioning": "定位", "time.and": "，",
 	"time.cut": "{what}用时为预测的 {of} 倍", "time.learnt": "按以往加工：{what}用时为预测的 {of} 倍", "cut.jumps": "抬刀", "cut.retracts": "回退",
 	"cut.shorts": "短路", "cut.time": "用时", "cut.line": "行", "cut.nojob": "没有程序",
 	"cut.condition": "条件", "cut.peak": "峰值", "cut.onoff": "脉宽 / 间歇", "cut.jump": "抬刀",
