@@ -527,6 +527,8 @@ static void what_was_tried_is_given_back_with_a_job_and_without(void **state)
 	struct rig r;
 
 	(void)state;
+	k.asking.field[INTERP_TECH_PEAK_A].stays = true;
+	k.asking.field[INTERP_TECH_OFF_US].stays = true;
 	rig_conds(&r, &k, 1, 2);
 	end_the_job(&r);
 	says = &r.in.generator;
@@ -700,6 +702,7 @@ static void what_is_leased_is_given_back_when_nobody_renews_it(void **state)
 
 	(void)state;
 	k.asking.lease_cycles = 50;
+	k.asking.field[INTERP_TECH_PEAK_A].stays = true;
 	rig_conds(&r, &k, 1, 2);
 	end_the_job(&r);
 	says = &r.in.generator;

@@ -61,12 +61,13 @@ static double has_by_now(const struct cycle *c, int i)
 	       process_nearest(d, i, says->told[i]) : (double)NAN;
 }
 
-/* Before @value is asked for. */
+/* Before @value is asked for.  Others than registers can be asked for their
+ * own setting. */
 static void lend(struct cycle *c, int i, double value)
 {
 	struct asking *a = &c->asking;
 
-	if (is_lent(a, i) || isnan(value))
+	if (!c->config.asking.field[i].stays || is_lent(a, i) || isnan(value))
 		return;
 	a->lent |= 1u << i;
 	a->before[i] = has_by_now(c, i);
@@ -167,14 +168,26 @@ bool asking_hand(struct cycle *c)
 	return true;
 }
 
-/* Somebody started it again.  What was set for another job is not known. */
+/* What a person set for another job is not known, nor what the generator has
+ * lost since: it is asked anew. */
+static void begin_job(struct cycle *c)
+{
+	struct asking *a = &c->asking;
+
+	if (a->path == c->out.path)
+		return;
+	a->path = c->out.path;
+	for (int i = 0; i < INTERP_NGENERATOR; i++)
+		a->hand[i] = (double)NAN;
+	a->needed = ++a->version;
+	a->age = 0;
+}
+
+/* Somebody started it again. */
 static void hear_hand(struct cycle *c)
 {
 	struct asking *a = &c->asking;
 
-	for (int i = 0; i < INTERP_NGENERATOR && a->path != c->out.path; i++)
-		a->hand[i] = (double)NAN;
-	a->path = c->out.path;
 	if (!a->stands || !state_duty[c->state].running)
 		return;
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
@@ -323,6 +336,7 @@ void asking_step(struct cycle *c, const struct io_inputs *in)
 		give_back(c);
 		return;
 	}
+	begin_job(c);
 	hear_hand(c);
 	a->dark = c->out.power ? 0 : a->dark + 1;
 	/* Where these end, nothing may have changed. */
