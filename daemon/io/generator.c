@@ -144,15 +144,18 @@ static bool answers(const struct generator *g, int field)
 	return tells(g, field) || is_taken(g, field);
 }
 
+double generator_slack(const struct config_way *told)
+{
+	return told->scale * 0.501 + told->within;
+}
+
 /* What was asked is a step of the generator, but for a converter: then it is a
- * step of that beside it.  What is told is the nearest count of that, or what
- * the machine file allows beside it. */
+ * step of that beside it. */
 static double slack_of(const struct generator *g, int field)
 {
-	const struct config_way *told = &g->told[field];
 	const double step = g->dac ? generator_dac_step(g, field) : 0;
 
-	return step + told->scale * 0.501 + told->within;
+	return step + generator_slack(&g->told[field]);
 }
 
 static bool agrees(const struct generator *g, int field)
@@ -391,11 +394,16 @@ double generator_value(const struct config_way *w, int field, uint64_t count)
 	return (double)count * (w->bits == 1 ? 1 : w->scale);
 }
 
-/* It goes at once, and nobody says when it is there. */
-static bool is_blind(const struct generator *g, int field)
+/* What it tells does not show when it has its value: it tells the same of the
+ * one before, or nothing.  Registers that are not told are settled where they
+ * are written. */
+static bool is_unseen(const struct generator *g, int field)
 {
-	return !tells(g, field) && (g->way[field].kind == WAY_CAN ||
-				    g->way[field].kind == WAY_LINES);
+	const enum config_way_kind kind = g->way[field].kind;
+
+	return agrees(g, field) &&
+	       (kind == WAY_CAN || kind == WAY_LINES ||
+		(kind == WAY_REGISTER && tells(g, field)));
 }
 
 static bool is_same(double a, double b)
@@ -420,10 +428,12 @@ static void take(struct generator *g, const struct io_outputs *out)
 		g->had = 0;
 	g->asked = out->asked;
 	for (int i = 0; i < INTERP_NGENERATOR; i++) {
-		g->had &= ~((uint32_t)(g->value[i] != out->pulse[i]) << i);
-		if (is_blind(g, i) && !is_same(g->value[i], out->pulse[i]))
-			g->settling = g->settle;
+		if (is_same(g->value[i], out->pulse[i]))
+			continue;
+		g->had &= ~(1u << i);
 		g->value[i] = out->pulse[i];
+		if (is_unseen(g, i))
+			g->settling = g->settle;
 	}
 	g->anew = out->reset;
 	if (out->reset) {		/* what it has must be told again */

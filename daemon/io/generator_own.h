@@ -134,6 +134,10 @@ uint64_t generator_count(const struct config_way *w, int field, double value);
 /** generator_value() - the value of these bits. */
 double generator_value(const struct config_way *w, int field, uint64_t count);
 
+/** generator_slack() - how far from a value that it has it may tell it: by half
+ *  a count, and by what the machine file allows beside it. */
+double generator_slack(const struct config_way *told);
+
 /** generator_hears() - it told these bits for field @field. */
 void generator_hears(struct generator *g, int field, uint64_t count);
 

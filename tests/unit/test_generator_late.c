@@ -9,6 +9,7 @@
 
 #define LATE_MOST	15		/* periods; settle_ms is 20 */
 #define WAYS_MOST	64
+#define OWN		0xff		/* low byte of one that is not given */
 
 struct set {
 	uint8_t tenths;			/* A */
@@ -42,7 +43,7 @@ static void late_turn(struct late *g)
 	if (rnd(&g->seed) % 50 == 0)
 		g->late = (int)(rnd(&g->seed) % LATE_MOST);
 	if (rnd(&g->seed) % 2000 == 0) {
-		g->has = (struct set) { 0, false };
+		g->has = (struct set) { OWN, false };
 		g->n = 0;
 		g->hurt = 1;
 		g->restarts++;
@@ -52,6 +53,14 @@ static void late_turn(struct late *g)
 	g->n -= n;
 	memmove(g->way, g->way + n, (size_t)g->n * sizeof(g->way[0]));
 	memmove(g->due, g->due + n, (size_t)g->n * sizeof(g->due[0]));
+}
+
+/* It tells half amperes: some of these it tells alike.  NAN: its own. */
+static double any_peak(uint64_t *seed)
+{
+	static const double peak[] = { 6, 6.2, 9, 12, 12.1, (double)NAN };
+
+	return peak[rnd(seed) % 6];
 }
 
 /* As the cycle does: nothing is asked but in the dark, and nothing sparks but
@@ -64,7 +73,7 @@ static void cycle_turn(struct rig *r, struct late *g)
 		r->out.power = false;
 		r->out.reset = says->trouble && rnd(&g->seed) % 8 == 0;
 	} else if (!r->out.power && rnd(&g->seed) % 6 == 0) {
-		ask(r, 6 + 3 * (double)(rnd(&g->seed) % 3));
+		ask(r, any_peak(&g->seed));
 		r->out.pulse[INTERP_TECH_POLARITY] = rnd(&g->seed) % 2 ? -1 : 1;
 		g->changes++;
 	} else {
@@ -74,8 +83,9 @@ static void cycle_turn(struct rig *r, struct late *g)
 
 static void check_spark(const struct rig *r, struct late *g)
 {
-	const bool as_asked = g->has.tenths ==
-			      10 * r->out.pulse[INTERP_TECH_PEAK_A] &&
+	const double peak_a = r->out.pulse[INTERP_TECH_PEAK_A];
+	const bool as_asked = g->has.tenths == (isnan(peak_a) ? OWN :
+						lround(10 * peak_a)) &&
 			      g->has.negative ==
 			      (r->out.pulse[INTERP_TECH_POLARITY] < 0);
 
