@@ -17,6 +17,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <modbus.h>
 #include <semaphore.h>
 #include <stdlib.h>
@@ -83,7 +84,8 @@ struct generator_modbus {
 	modbus_t *link;
 	bool up, singles;		/* singles: it has no function 16 */
 	bool met;			/* it was read since the link is up */
-	bool odd;			/* it told another value than it took */
+	bool odd;			/* it tells another value than it has
+					 * taken */
 	bool lost;			/* it may have lost what it does not
 					 * tell */
 	struct bank bank;
@@ -240,7 +242,8 @@ static int write_registers(struct generator_modbus *m, int from, int to)
 				       b->image + from));
 
 	m->took_ns = clock_ns(CLOCK_MONOTONIC);
-	return err;
+	/* It has it, and tells it or has it after settle_ms. */
+	return err == EMBXACK ? 0 : err;
 }
 
 /* The slave has it: what was read before is old. */
@@ -321,19 +324,19 @@ static bool is_next(const struct config_way *a, const struct config_way *b)
 	return a->input == b->input && b->id <= a->id + registers_of(a);
 }
 
-static bool is_odd(struct generator_modbus *m, int field)
+/* It tells another value than was written last, there or elsewhere. */
+static bool is_odd(const struct generator_modbus *m, int field)
 {
 	const struct config_way *w = &m->way[field], *t = &m->told[field];
 	const struct bank *b = &m->bank;
-	int at;
+	const int at = w->kind == WAY_REGISTER ? bank_find(b, w->id) : -1;
+	double has;
 
-	if (w->kind != WAY_REGISTER || t->input || t->id != w->id ||
-	    t->bit != w->bit || t->bits != w->bits)
+	if (at < 0 || !b->kept[at])
 		return false;
-	at = bank_find(b, w->id);
-	return at >= 0 && b->kept[at] &&
-	       ((unsigned int)b->image[at] >> w->bit &
-		((1u << w->bits) - 1)) != m->word.count[field];
+	has = generator_value(w, field, (b->image[at] & mask_of(w)) >> w->bit);
+	return !(fabs(generator_value(t, field, m->word.count[field]) - has) <=
+		 generator_slack(t));
 }
 
 static uint32_t bits_of(const struct config_way *w, const uint16_t *got)
@@ -411,6 +414,7 @@ static int read_told(struct generator_modbus *m)
 	const int n = order(m, field);
 	int err = n ? 0 : read_any(m), to;
 
+	m->odd = false;
 	for (int from = 0; from < n && err == 0; from = to) {
 		to = from + 1;
 		while (to < n && is_next(&m->told[field[to - 1]],
@@ -458,7 +462,7 @@ static void take_wish(struct generator_modbus *m, const struct wish *w)
 	/* One that has lost something gets all of it. */
 	if (again || m->odd || m->lost)
 		memset(m->bank.kept, 0, sizeof(m->bank.kept));
-	m->odd = m->lost = false;
+	m->lost = false;
 	m->word.refused = NONE;
 	m->took = w->version;
 	m->again = m->word.again = w->again;

@@ -30,9 +30,22 @@ struct slave {
 	pthread_mutex_t lock;		/* of `map`: an answer is whole */
 	_Atomic bool quit, no_6;	/* no_6: it has function 16 alone */
 	_Atomic bool waits;		/* for the lock */
+	_Atomic bool does;		/* input 0 is what it does: what is
+					 * written, or its panel says */
 	_Atomic int late_us, refuses;	/* refuses: a register, or -1 */
-	_Atomic uint32_t asked;
+	_Atomic bool needs_time;	/* it acknowledges each write */
+	_Atomic uint32_t asked, written;
 };
+
+static void acknowledge(struct slave *s, const uint8_t *ask, int at)
+{
+	const int first = ask[at + 1] << 8 | ask[at + 2];
+	const uint8_t *x = ask + at + 6;
+
+	for (int i = 0; i < ask[at + 5] / 2; i++, x += 2)
+		s->map->tab_registers[first + i] = (uint16_t)(x[0] << 8 | x[1]);
+	modbus_reply_exception(s->link, ask, MODBUS_EXCEPTION_ACKNOWLEDGE);
+}
 
 static void answer(struct slave *s, const uint8_t *ask, int n)
 {
@@ -46,7 +59,10 @@ static void answer(struct slave *s, const uint8_t *ask, int n)
 	s->waits = true;
 	pthread_mutex_lock(&s->lock);
 	s->waits = false;
-	if (ask[at] == 6 && atomic_load(&s->no_6))
+	s->written += ask[at] == 6 || ask[at] == 16;
+	if (ask[at] == 16 && atomic_load(&s->needs_time))
+		acknowledge(s, ask, at);
+	else if (ask[at] == 6 && atomic_load(&s->no_6))
 		modbus_reply_exception(s->link, ask,
 				       MODBUS_EXCEPTION_ILLEGAL_FUNCTION);
 	else if ((ask[at] == 6 || ask[at] == 16) && no >= first &&
@@ -55,6 +71,8 @@ static void answer(struct slave *s, const uint8_t *ask, int n)
 				       MODBUS_EXCEPTION_ILLEGAL_DATA_VALUE);
 	else
 		modbus_reply(s->link, ask, n, s->map);
+	if (atomic_load(&s->does) && (ask[at] == 6 || ask[at] == 16) && !first)
+		s->map->tab_input_registers[0] = s->map->tab_registers[0];
 	pthread_mutex_unlock(&s->lock);
 }
 
@@ -135,6 +153,13 @@ static void shop_open_with(struct shop *s, int cuts, const char *more)
 	assert_int_equal(generator_modbus_open(g, &s->c, &d), 0);
 	k = shop_config(s);
 	shop_load(s, cuts, &k);
+}
+
+static void set_registers(const uint16_t to[NREGISTERS])
+{
+	pthread_mutex_lock(&slave.lock);
+	memcpy(slave.map->tab_registers, to, NREGISTERS * sizeof(*to));
+	pthread_mutex_unlock(&slave.lock);
 }
 
 static void shop_open(struct shop *s, int cuts)
@@ -229,6 +254,58 @@ static void no_spark_has_another_condition_however_late_it_is(void **state)
 	}
 	assert_int_equal(shop.r.c.outcome, OUTCOME_DONE);
 	assert_true(shop.sparks > 1000 && shop.waits > 30);
+}
+
+/* Before the first period of the cycle. */
+static void until_told(struct shop *s, int field, double value)
+{
+	for (int i = 0; i < TURNS_MOST &&
+	     s->r.in.generator.told[field] != value; i++) {
+		s->axes.read(s->axes.self, &s->r.in);
+		s->axes.write(s->axes.self, &s->r.out);
+		usleep(TURN_US);
+	}
+	assert_true(s->r.in.generator.told[field] == value);
+}
+
+static void until_done(struct shop *s)
+{
+	for (int i = 0; i < TURNS_MOST && s->r.c.loaded; i++)
+		turn(s);
+	assert_int_equal(s->r.c.outcome, OUTCOME_DONE);
+}
+
+static void until_trouble(struct shop *s)
+{
+	for (int i = 0; i < TURNS_MOST && !s->r.in.generator.trouble; i++) {
+		turn(s);
+		usleep(TURN_US);
+	}
+	assert_true(s->r.in.generator.trouble);
+}
+
+/* It has what the job asks for before any job: so nothing is asked between two
+ * of them. */
+static void what_it_loses_between_jobs_is_no_fault(void **state)
+{
+	static const uint16_t c200[NREGISTERS] = {
+		60, 80, 200, 180, 0, 0, 150
+	};
+	struct shop *s = &shop;
+
+	(void)state;
+	shop_open(s, 1);
+	s->r.c.config.gap.servo_v = 15;
+	set_registers(c200);
+	until_told(s, INTERP_TECH_PEAK_A, 6);
+	until_done(s);
+	set_registers((const uint16_t[NREGISTERS]) { 0 });
+	until_trouble(s);
+	assert_int_equal(cycle_load(&s->r.c, &s->r.m.p), ANSWER_DONE);
+	for (int i = 0; i < 3; i++)
+		turn(s);
+	assert_int_equal(tell(&s->r, CYCLE_START), ANSWER_DONE);
+	until_done(s);
 }
 
 static void until_fault(struct shop *s)
@@ -379,6 +456,24 @@ static void what_one_without_function_6_refuses_is_told_as_it_is(void **state)
 			       "exception 3, no such value"));
 }
 
+/* Exception 5: it has accepted what was written, and needs time for it. */
+static void what_it_acknowledges_is_not_written_again(void **state)
+{
+	uint32_t written;
+
+	(void)state;
+	shop_open(&shop, 1);
+	slave.needs_time = true;
+	for (int i = 0; i < TURNS_MOST && !shop.sparks; i++)
+		turn(&shop);
+	assert_true(shop.sparks > 0);
+	written = slave.written;
+	slave.asked = 0;
+	for (int i = 0; i < TURNS_MOST && slave.asked < 20; i++)
+		usleep(TURN_US);
+	assert_int_equal(slave.written, written);
+}
+
 /* -- Values that are asked for one behind the other ------------------------ */
 
 static void ask_peak(double a)
@@ -451,6 +546,42 @@ static void settle_ms_is_from_when_it_was_taken(void **state)
 	for (; n < TURNS_MOST && !is_in_force(); n++)
 		period();
 	assert_in_range(n, settle - 1, settle + 1);
+}
+
+static double told_peak_a(void)
+{
+	return shop.r.in.generator.told[INTERP_TECH_PEAK_A];
+}
+
+static void until_in_force(void)
+{
+	for (int i = 0; i < TURNS_MOST && !is_in_force(); i++, usleep(TURN_US))
+		period();
+	assert_true(is_in_force());
+}
+
+/* Between two jobs, and its register has what the next one asks for. */
+static void what_a_person_set_at_its_panel_is_set_anew(void **state)
+{
+	(void)state;
+	shop_open_with(&shop, 1, "told_peak_a = input 0 scale 0.1\n");
+	slave.does = true;
+	shop.r.out = (struct io_outputs) { .power = false };
+	io_pulse_own(&shop.r.out);
+	ask_peak(6);
+	until_in_force();
+	ask_peak((double)NAN);
+	until_in_force();
+	pthread_mutex_lock(&slave.lock);
+	slave.map->tab_input_registers[0] = 70;
+	pthread_mutex_unlock(&slave.lock);
+	for (int i = 0; i < TURNS_MOST && told_peak_a() != 7; i++) {
+		period();
+		usleep(TURN_US);
+	}
+	ask_peak(6);
+	until_in_force();
+	assert_int_equal(slave.map->tab_input_registers[0], 60);
 }
 
 /* -- Counts ---------------------------------------------------------------- */
@@ -577,13 +708,16 @@ int main(void)
 		WITH_SHOP(c200_reaches_it_whole_before_the_first_spark),
 		WITH_SHOP(what_it_does_not_tell_has_settle_ms),
 		WITH_SHOP(no_spark_has_another_condition_however_late_it_is),
+		WITH_SHOP(what_it_loses_between_jobs_is_no_fault),
 		WITH_SHOP(what_it_refuses_never_sparks_and_is_a_fault),
 		WITH_SHOP(one_that_loses_its_values_ends_the_sparks),
 		WITH_SHOP(what_it_lost_behind_a_cut_link_ends_the_sparks),
 		WITH_SHOP(what_it_does_not_tell_may_be_lost_behind_a_cut_link),
 		WITH_SHOP(a_link_that_is_cut_is_no_fault_by_itself),
 		WITH_SHOP(one_without_function_6_is_written_by_16),
+		WITH_SHOP(what_it_acknowledges_is_not_written_again),
 		WITH_SHOP(settle_ms_is_from_when_it_was_taken),
+		WITH_SHOP(what_a_person_set_at_its_panel_is_set_anew),
 		WITH_SHOP(what_one_without_function_6_refuses_is_told_as_it_is),
 		WITH_SHOP(counts_become_shares_over_the_ends_of_registers),
 		WITH_SHOP(counts_that_stand_or_are_silent_are_none),
