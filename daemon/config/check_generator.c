@@ -476,6 +476,25 @@ static int check_spark(struct check *q)
 	return refuse(q, "spark");
 }
 
+/* libmodbus would take 9600 for another one. */
+static int check_baud(struct check *q)
+{
+	static const double speed[] = {
+		300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200,
+		230400, 460800, 500000, 576000, 921600
+	};
+	const double baud = q->c->generator.baud;
+
+	for (size_t i = 0; i < sizeof(speed) / sizeof(speed[0]); i++)
+		if (baud == speed[i])
+			return 0;
+	interp_diag_say(q->diag, "generator.modbus_baud %.0f is no speed of a "
+			"serial port; 300 600 1200 2400 4800 9600 19200 38400 "
+			"57600 115200 230400 460800 500000 576000 921600",
+			baud);
+	return refuse(q, "modbus_baud");
+}
+
 static int check_modbus_at(struct check *q)
 {
 	const struct config_generator *g = &q->c->generator;
@@ -495,7 +514,7 @@ static int check_modbus_at(struct check *q)
 				at.serial ? "" : ", 0 or 255");
 		return refuse(q, "modbus_unit");
 	}
-	return 0;
+	return check_baud(q);
 }
 
 /* One answer that is lost is no fault yet. */

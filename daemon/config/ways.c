@@ -253,6 +253,8 @@ static const char *give_place(struct config_way *w, int field)
 	if (is_switch(field) != (w->bits == 1))
 		return is_switch(field) ? "is of a field that is on or off" :
 					  "is one bit of a number";
+	if (is_switch(field) && (w->scale != 1 || w->within > 0))
+		return "has a scale, and is of a field that is on or off";
 	if (is_switch(field))
 		give_switch(&w->gives, field);
 	else
@@ -414,6 +416,22 @@ static const char *read_dac(struct words *w, int field, struct config_way *ret)
 	       "cannot hold a value of the field";
 }
 
+/* Of two scales one would be lost. */
+static bool has_twice(const char *text)
+{
+	struct words a = { .at = text };
+
+	while (next(&a)) {
+		struct words b = { .at = a.at };
+
+		while (strspn(a.word, "abcdefghijklmnopqrstuvwxyz") ==
+		       strlen(a.word) && next(&b))
+			if (strcmp(a.word, b.word) == 0)
+				return true;
+	}
+	return false;
+}
+
 const char *config_way_read(const char *text, int field,
 			    struct config_way *ret)
 {
@@ -423,6 +441,8 @@ const char *config_way_read(const char *text, int field,
 	next(&w);
 	if (strcmp(w.word, "none") == 0)
 		return *w.at ? "has a word after none" : NULL;
+	if (has_twice(w.at))
+		return "has a word twice";
 	if (strcmp(w.word, "lines") == 0 || strcmp(w.word, "line") == 0)
 		return read_way_lines(&w, field, ret);
 	if (strcmp(w.word, "can") == 0)

@@ -286,6 +286,15 @@ static const struct refusal refusals[] = {
 	  "has no port of 1 to 65535", "[fd00::5]:502" },
 	{ MODBUS "modbus = /dev/ttyS0\nmodbus_unit = 0\npeak_a = register 1\n",
 	  6, 0, "generator.modbus_unit 0", "1 to 247" },
+	{ MODBUS "modbus = /dev/ttyS0\nmodbus_baud = 12345\n"
+	  "peak_a = register 1\n", 6, 0, "generator.modbus_baud 12345",
+	  "9600 19200 38400" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1 scale 1 scale 2\n",
+	  6, 0, "has a word twice", "as register 10" },
+	{ MODBUS "modbus = /dev/ttyS0\npolarity = register 1 bit 0\n"
+	  "told_polarity = input 1 bit 0 scale 4\n", 7, 0,
+	  "has a scale, and is of a field that is on or off",
+	  "as register 14 bit 0" },
 	{ MODBUS "modbus = /dev/ttyS0\nsilent_ms = 149\npeak_a = register 1\n",
 	  6, 0, "generator.silent_ms 149", "at least 150" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
