@@ -11,13 +11,22 @@
  */
 #include "speed/pass.h"
 
+#include <stddef.h>
+
 #define STEP	(1 + 1.0f / 32)
 
-/* From segment @from on. */
+/* Of one number of the segments, from segment @from on. */
 struct run {
 	uint32_t from;
 	float least, most;
+	size_t number;			/* where in a segment it is */
+	bool moves;			/* actions have none */
 };
+
+static inline float *number_of(const struct run *k, struct interp_seg *s)
+{
+	return (float *)((char *)s + k->number);
+}
 
 /* Does it go on with this value? */
 static inline bool run_on(struct run *k, float v)
@@ -36,78 +45,37 @@ static inline bool run_on(struct run *k, float v)
 	return true;
 }
 
-static struct run begin(uint32_t from)
-{
-	return (struct run) { from, INFINITY, 0 };
-}
-
-static void level_a(struct interp_seg *segs, const struct run *k, uint32_t to)
+static void level(const struct run *k, struct interp_seg *segs, uint32_t to)
 {
 	for (uint32_t i = k->from; i < to && k->most > k->least; i++)
-		if (segs[i].kind < INTERP_BEGIN)
-			segs[i].a_mm_s2 = k->least;
+		if (!k->moves || segs[i].kind < INTERP_BEGIN)
+			*number_of(k, &segs[i]) = k->least;
 }
 
-static void level_node(struct interp_seg *segs, const struct run *k,
-		       uint32_t to)
+/* Nodes without a limit, INFINITY, are a run of their own. */
+static inline void go_on(struct run *k, struct interp_seg *segs, uint32_t i)
 {
-	for (uint32_t i = k->from; i < to && k->most > k->least; i++)
-		segs[i].node_mm_s = k->least;
-}
+	const float v = *number_of(k, &segs[i]);
 
-static void level_j(struct interp_seg *segs, const struct run *k, uint32_t to)
-{
-	for (uint32_t i = k->from; i < to && k->most > k->least; i++)
-		if (segs[i].kind < INTERP_BEGIN)
-			segs[i].j_mm_s3 = k->least;
-}
-
-/* Does segment @i go on with these?  Nodes go on over what does not move. */
-static inline void node_on(struct interp_seg *segs, uint32_t i, struct run *k)
-{
-	const float v = segs[i].node_mm_s;
-
-	/* Nodes without a limit, INFINITY, are a run of their own. */
-	if (run_on(k, v))
+	if ((k->moves && segs[i].kind >= INTERP_BEGIN) || run_on(k, v))
 		return;
-	level_node(segs, k, i);
-	*k = (struct run) { i, v, v };
-}
-
-static inline void a_on(struct interp_seg *segs, uint32_t i, struct run *k)
-{
-	const float a = segs[i].a_mm_s2;
-
-	if (run_on(k, a))
-		return;
-	level_a(segs, k, i);
-	*k = (struct run) { i, a, a };
-}
-
-static inline void j_on(struct interp_seg *segs, uint32_t i, struct run *k)
-{
-	const float j = segs[i].j_mm_s3;
-
-	if (run_on(k, j))
-		return;
-	level_j(segs, k, i);
-	*k = (struct run) { i, j, j };
+	level(k, segs, i);
+	k->from = i;
+	k->least = k->most = v;
 }
 
 void pass_levels(struct pass *w)
 {
-	struct interp_seg *segs = w->segs;
-	const uint32_t end = w->end + 1;
-	struct run a = begin(0), j = begin(0), v = begin(0);
+	struct run runs[] = {
+		{ 0, INFINITY, 0, offsetof(struct interp_seg, node_mm_s),
+		  false },
+		{ 0, INFINITY, 0, offsetof(struct interp_seg, a_mm_s2), true },
+		{ 0, INFINITY, 0, offsetof(struct interp_seg, j_mm_s3), true },
+	};
 
-	for (uint32_t i = 0; i < end; i++) {
-		node_on(segs, i, &v);
-		if (segs[i].kind >= INTERP_BEGIN)
-			continue;
-		a_on(segs, i, &a);
-		j_on(segs, i, &j);
+	for (int n = 0; n < 3; n++) {
+		for (uint32_t i = 0; i <= w->end; i++)
+			go_on(&runs[n], w->segs, i);
+		level(&runs[n], w->segs, w->end + 1);
 	}
-	level_a(segs, &a, end);
-	level_j(segs, &j, end);
-	level_node(segs, &v, end);
 }

@@ -10,23 +10,20 @@
  */
 #include "speed/looks.h"
 #include "speed/pass.h"
+#include "speed/sections.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Fewer need no time.  The piece of a curve between two cusps may have some
- * points and next to no length. */
-#define MANY_POINTS	64
-
-/* Lines that are shorter than so many corners stand for a curve. */
-#define SHORT_CORNERS	100
 
 /* Of what looks at a curve allow, between them. */
 #define LOOKED		0.98f
 
 /* Where stands may pay is found with so much of what the axes can do. */
 #define PLAIN		0.5
+
+/* All stands together save so much: a jump has to stand there, too. */
+#define WORTH		0.97
 
 /* From what is best for a way of many bends to that for one with few. */
 static const struct interp_straight shares[] = {
@@ -70,7 +67,7 @@ static void set_speed(const struct limits *w, uint32_t i, double v_mm_s)
 	s->feed_max_mm_s = (float)smaller((double)w->looks.of[i].own_mm_s,
 					  v_mm_s);
 	/* A cycle that has no time for its points would break off the move. */
-	if (s->ticks >= MANY_POINTS)
+	if (s->ticks > 0)
 		s->feed_max_mm_s = pass_least(
 			s->feed_max_mm_s,
 			(float)(w->points_per_s * s->length_mm /
@@ -280,29 +277,25 @@ static bool differ(const struct limits *w)
 	       most.j_mm_s3 >= PASS_SIDE * least.j_mm_s3;
 }
 
-/* Where the length of the path passes to other axes, a move may stand.  Return:
- * does it anywhere? */
-static bool stand_at_parts(struct limits *w)
+static double all_s(const struct limits *w)
 {
-	bool any = false;
-
-	for (uint32_t i = 1; i < w->pass.end; i++) {
-		if (!w->looks.of[i].ends_part)
-			continue;
-		pass_set_stand(&w->pass, i, true);
-		any = true;
-	}
-	return any;
+	return pass_moves_s(&w->pass, 0, w->pass.end, false, w->v2);
 }
 
+/* All that pay one by one, or none. */
 static int find_stands(struct limits *w)
 {
+	double one_s;
 	int err;
 
-	if (!stand_at_parts(w) && !differ(w))
+	if (!differ(w))
 		return 0;
 	write_ceilings(w);
+	one_s = all_s(w);
 	err = pass_stands(&w->pass);
+	if (all_s(w) >= WORTH * one_s)
+		for (uint32_t i = 1; i < w->pass.end; i++)
+			pass_set_stand(&w->pass, i, false);
 	for (uint32_t i = 1; i < w->pass.end; i++) {
 		w->pass.segs[i].a_mm_s2 = w->looks.of[i].a_mm_s2;
 		w->pass.segs[i].j_mm_s3 = w->looks.of[i].j_mm_s3;
@@ -330,7 +323,7 @@ int interp_limits_write(const struct interp_limits *l,
 {
 	struct limits w = {
 		.pass = { .p = p, .segs = segs, .end = p->head->nsegs - 1,
-			  .short_mm = SHORT_CORNERS * l->corner_mm },
+			  .short_mm = SECTIONS_SHORT * l->corner_mm },
 		.points_per_s = l->points_per_s,
 		.v2 = malloc(p->head->nsegs * sizeof(float)),
 	};

@@ -231,15 +231,13 @@ static int look_at_run(struct making *m, const struct section *s)
 	return err;
 }
 
-/* Over actions, too; but these end a part anyway. */
+/* Over actions, too. */
 static void note_corner(struct making *m, const struct section *s)
 {
 	const struct section *next = s + 1;
 
 	for (uint32_t i = s->to - 1; i < next->from; i++)
 		m->to->of[i].node_mm_s = (float)s->corner_mm_s;
-	m->to->of[s->to - 1].ends_part = s->to == next->from &&
-					 s->along != next->along;
 }
 
 /* A line that goes back and forth within a rounding asks for nothing. */

@@ -23,8 +23,6 @@ struct looks {
 	float a_mm_s2, j_mm_s3;		/* along it, as if nothing bent */
 	bool is_run;			/* a line of a run: a look at each
 					 * end */
-	bool ends_part;			/* behind it the length is in other
-					 * columns */
 	bool goes_on;			/* its last look is the first of the
 					 * next segment */
 };

@@ -38,8 +38,7 @@ void pass_levels(struct pass *w);
 
 /**
  * pass_stands() - flag the nodes at which a move stands, because the axes allow
- * much less on one side: at first there are stands where the length of the path
- * passes to other axes.
+ * much less on one side.
  *
  * Return: 0, -ENOMEM.
  */

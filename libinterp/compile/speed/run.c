@@ -3,6 +3,7 @@
 #include "speed/run.h"
 
 #include "speed/along.h"
+#include "speed/ways.h"
 #include "interp/smaller.h"
 
 #include "grow.h"
@@ -19,12 +20,6 @@
 #define CORNER		4		/* boxes: turned by more over a chord */
 #define BESIDE		3		/* times as much as a chord away */
 #define RATE_MM		0.1		/* to both sides */
-#define RATE_MOST	20		/* beside the path, a rounding of it
-					 * counts so often */
-#define POINT_MM	0.025		/* between points */
-#define LINE_POINTS	4		/* a line has no more: it sags by a
-					 * parabola at most */
-#define END_WEIGHT_MM	0.05
 #define WINDOW		16	/* nodes: where a part is looked for first */
 #define WINDOWS		16	/* the next one has so many times as many */
 
@@ -47,7 +42,7 @@ static bool is_along(const struct run *r, uint32_t k)
 static double box_of(const struct run *r, uint32_t k, double rate)
 {
 	return r->tolerance[k] *
-	       (is_along(r, k) ? 1 : 1 + smaller(fabs(rate), RATE_MOST));
+	       (is_along(r, k) ? 1 : 1 + smaller(fabs(rate), WAYS_RATE_MOST));
 }
 
 /* -- Turns ----------------------------------------------------------------- */
@@ -192,202 +187,106 @@ static void mark_corners(const struct run *r, struct turns *t)
 
 /* -- Points ---------------------------------------------------------------- */
 
-/* Of a part: its nodes, and places between them. */
+/* The nodes of a part, and what a rounding makes of each. */
 struct points {
-	size_t n;
-	double *s_mm, *x, *box, *weight;
-	size_t *node;			/* the one at it or before it */
+	struct shape_points of;
+	double *box, *weight;
 };
 
 static void points_free(struct points *p)
 {
-	free(p->s_mm);
-	free(p->x);
 	free(p->box);
 	free(p->weight);
-	free(p->node);
 }
 
-static size_t parts_of_line(double mm)
+/* The boxes of a rounding, by the rates around each point. */
+static void fill(struct points *p, const struct run *r)
 {
-	return (size_t)larger(smaller(ceil(mm / POINT_MM - 1e-9), LINE_POINTS),
-			      1);
+	const struct shape_points *of = &p->of;
+	size_t a = 0, b = 0;
+
+	for (size_t i = 0; i < of->n; i++) {
+		while (of->s_mm[i] - of->s_mm[a + 1] > RATE_MM)
+			a++;
+		while (b + 1 < of->n && of->s_mm[b] - of->s_mm[i] < RATE_MM)
+			b++;
+		p->weight[i] = (of->s_mm[i + 1 < of->n ? i + 1 : i] -
+				of->s_mm[i > 0 ? i - 1 : i]) / 2;
+		for (uint32_t k = 0; k < r->columns; k++) {
+			const double rate = (of->x[b * r->columns + k] -
+					     of->x[a * r->columns + k]) /
+					    (of->s_mm[b] - of->s_mm[a]);
+
+			p->box[i * r->columns + k] = box_of(r, k, rate);
+		}
+	}
 }
 
 static int points_make(struct points *p, const struct run *r, size_t first,
 		       size_t last)
 {
-	size_t n = 1;
+	const size_t n = last - first + 1;
 
-	for (size_t i = first; i < last; i++)
-		n += parts_of_line(r->s_mm[i + 1] - r->s_mm[i]);
-	*p = (struct points) {
-		.s_mm = malloc(n * sizeof(double)),
-		.x = malloc(n * r->columns * sizeof(double)),
-		.box = malloc(n * r->columns * sizeof(double)),
-		.weight = malloc(n * sizeof(double)),
-		.node = malloc(n * sizeof(size_t)),
+	p->box = malloc(n * r->columns * sizeof(double));
+	p->weight = malloc(n * sizeof(double));
+	p->of = (struct shape_points) {
+		.n = n, .columns = r->columns, .s_mm = r->s_mm + first,
+		.x = r->x + first * r->columns, .box = p->box,
+		.weight = p->weight,
 	};
-	if (p->s_mm && p->x && p->box && p->weight && p->node)
+	if (p->box && p->weight) {
+		fill(p, r);
 		return 0;
+	}
 	points_free(p);
 	return -ENOMEM;
-}
-
-/* How the slope of a column changes in a mm at node @i. */
-static double bend_at(const struct run *r, size_t i, uint32_t k, size_t first,
-		      size_t last)
-{
-	if (last - first < 2)
-		return 0;
-	if (i <= first)
-		i = first + 1;
-	if (i >= last)
-		i = last - 1;
-	return (slope(r, i, i + 1, k) - slope(r, i - 1, i, k)) * 2 /
-	       (r->s_mm[i + 1] - r->s_mm[i - 1]);
-}
-
-/*
- * Between two nodes that bend the same way a line may be an arc of the lesser
- * bend: a place there is off the line by its sag, or not.
- */
-static void add_between(struct points *p, const struct run *r, size_t i,
-			double q, const struct chords *part)
-{
-	const double mm = r->s_mm[i + 1] - r->s_mm[i];
-
-	for (uint32_t k = 0; k < r->columns; k++) {
-		const double a = bend_at(r, i, k, part->before, part->behind);
-		const double b = bend_at(r, i + 1, k, part->before,
-					 part->behind);
-		const double bow = q * (mm - q) / 2;
-		const double sag = a * b <= 0 ? 0 :
-				   copysign(smaller(fabs(a), fabs(b)), a) * bow;
-		const size_t at_k = p->n * r->columns + k;
-
-		p->x[at_k] = at(r, i, k) + slope(r, i, i + 1, k) * q -
-			     0.75 * sag;
-		p->box[at_k] = r->corner_mm + fabs(sag) / 2 +
-			       0.3 * larger(fabs(a), fabs(b)) * bow;
-	}
-}
-
-static void add_line(struct points *p, const struct run *r, size_t i,
-		     const struct chords *part)
-{
-	const double mm = r->s_mm[i + 1] - r->s_mm[i];
-	const size_t n = parts_of_line(mm);
-
-	for (size_t j = 0; j < n; j++, p->n++) {
-		p->s_mm[p->n] = r->s_mm[i] + mm * (double)j / (double)n;
-		p->node[p->n] = i;
-		if (j > 0) {
-			add_between(p, r, i, mm * (double)j / (double)n, part);
-			continue;
-		}
-		for (uint32_t k = 0; k < r->columns; k++) {
-			p->x[p->n * r->columns + k] = at(r, i, k);
-			p->box[p->n * r->columns + k] = 0;
-		}
-	}
-}
-
-/* The boxes of a rounding, by the rates around each point. */
-static void widen(struct points *p, const struct run *r)
-{
-	size_t a = 0, b = 0;
-
-	for (size_t i = 0; i < p->n; i++) {
-		while (p->s_mm[i] - p->s_mm[a + 1] > RATE_MM)
-			a++;
-		while (b + 1 < p->n && p->s_mm[b] - p->s_mm[i] < RATE_MM)
-			b++;
-		for (uint32_t k = 0; k < r->columns; k++) {
-			const double rate = (p->x[b * r->columns + k] -
-					     p->x[a * r->columns + k]) /
-					    (p->s_mm[b] - p->s_mm[a]);
-
-			p->box[i * r->columns + k] += box_of(r, k, rate);
-		}
-	}
-}
-
-static void weigh(struct points *p)
-{
-	const size_t n = p->n;
-
-	for (size_t i = 0; i < n; i++)
-		p->weight[i] = (p->s_mm[i + 1 < n ? i + 1 : i] -
-				p->s_mm[i > 0 ? i - 1 : i]) / 2;
-	p->weight[0] = larger(p->weight[0], END_WEIGHT_MM);
-	p->weight[n - 1] = larger(p->weight[n - 1], END_WEIGHT_MM);
-}
-
-static void fill(struct points *p, const struct run *r, size_t first,
-		 size_t last)
-{
-	const struct chords part = { first, last };
-
-	for (size_t i = first; i < last; i++)
-		add_line(p, r, i, &part);
-	p->s_mm[p->n] = r->s_mm[last];
-	p->node[p->n] = last;
-	for (uint32_t k = 0; k < r->columns; k++) {
-		p->x[p->n * r->columns + k] = at(r, last, k);
-		p->box[p->n * r->columns + k] = 0;
-	}
-	p->n++;
-	widen(p, r);
-	weigh(p);
 }
 
 /* -- Parts ----------------------------------------------------------------- */
 
 /* Is column @k straight, within its boxes?  @ret: by so much in a mm. */
-static bool is_straight(const struct points *p, uint32_t columns, uint32_t k,
-			double *ret)
+static bool is_straight(const struct shape_points *p, uint32_t k, double *ret)
 {
+	const double *at = p->x + k, *box = p->box + k;
+	const size_t n = p->n, by = p->columns;
 	double w = 0, s = 0, x = 0, ss = 0, sx = 0;
 
-	for (size_t i = 0; i < p->n; i++) {
+	for (size_t i = 0; i < n; i++) {
 		w += p->weight[i];
 		s += p->weight[i] * p->s_mm[i];
-		x += p->weight[i] * p->x[i * columns + k];
+		x += p->weight[i] * at[i * by];
 	}
-	for (size_t i = 0; i < p->n; i++) {
+	for (size_t i = 0; i < n; i++) {
 		const double ds = p->s_mm[i] - s / w;
 
 		ss += p->weight[i] * ds * ds;
-		sx += p->weight[i] * ds * (p->x[i * columns + k] - x / w);
+		sx += p->weight[i] * ds * (at[i * by] - x / w);
 	}
 	*ret = sx / ss;
-	for (size_t i = 0; i < p->n; i++)
-		if (!(fabs(p->x[i * columns + k] - x / w -
-			   *ret * (p->s_mm[i] - s / w)) <=
-		      p->box[i * columns + k]))
+	for (size_t i = 0; i < n; i++)
+		if (!(fabs(at[i * by] - x / w - *ret * (p->s_mm[i] - s / w)) <=
+		      box[i * by]))
 			return false;
 	return true;
 }
 
-static bool is_line(const struct points *p, const struct run *r,
-		    struct run_part *ret)
+static bool is_line(const struct shape_points *p, struct run_part *ret)
 {
-	for (uint32_t k = 0; k < r->columns; k++)
-		if (!is_straight(p, r->columns, k, &ret->straight[k]))
+	for (uint32_t k = 0; k < p->columns; k++)
+		if (!is_straight(p, k, &ret->straight[k]))
 			return false;
 	return true;
 }
 
-/* Of a part that has no shape: the node near to point @i that turns most. */
-static size_t cut_at(const struct run *r, const struct points *p, size_t i,
+/* Of a part that has no shape: the node near to @node that turns most. */
+static size_t cut_at(const struct run *r, size_t node,
 		     const struct run_part *part)
 {
 	const size_t first = part->first + 1, last = part->last - 1;
-	const size_t node = p->node[i] < first ? first :
-			    p->node[i] > last ? last : p->node[i];
 	const double mm = chord_mm(r);
-	const struct chords near = chords_of(r, node, 2.5 * mm, first, last);
+	const struct chords near = chords_of(r, node < first ? first :
+						node > last ? last : node,
+					     2.5 * mm, first, last);
 	size_t ret = near.before;
 	double most = 0;
 
@@ -406,7 +305,6 @@ static size_t cut_at(const struct run *r, const struct points *p, size_t i,
 /* Return: 0; @ret_cut: where to cut it, or its last node. */
 static int fit(const struct run *r, struct run_part *part, size_t *ret_cut)
 {
-	struct shape_points sp = { .columns = r->columns };
 	struct points p;
 	size_t corner;
 	int err;
@@ -415,23 +313,13 @@ static int fit(const struct run *r, struct run_part *part, size_t *ret_cut)
 	part->shape = (struct shape) { .columns = r->columns };
 	if (points_make(&p, r, part->first, part->last) < 0)
 		return -ENOMEM;
-	fill(&p, r, part->first, part->last);
-	if (part->last - part->first < 2 || is_line(&p, r, part)) {
-		for (uint32_t k = 0; part->last - part->first < 2 &&
-				     k < r->columns; k++)
-			part->straight[k] = slope(r, part->first, part->last,
-						  k);
+	if (is_line(&p.of, part)) {
 		points_free(&p);
 		return 0;
 	}
-	sp.n = p.n;
-	sp.s_mm = p.s_mm;
-	sp.x = p.x;
-	sp.box = p.box;
-	sp.weight = p.weight;
-	err = shape_fit(&sp, &part->shape, &corner);
-	if (err == 0 && corner < p.n) {
-		*ret_cut = cut_at(r, &p, corner, part);
+	err = shape_fit(&p.of, &part->shape, &corner);
+	if (err == 0 && corner < p.of.n) {
+		*ret_cut = cut_at(r, part->first + corner, part);
 		shape_free(&part->shape);
 	}
 	points_free(&p);

@@ -23,7 +23,6 @@ struct run {
 	const double *s_mm;		/* rising */
 	const double *x;
 	double tolerance[INTERP_NAXES];
-	double corner_mm;
 };
 
 /* A part without a corner, from one node to another. */

@@ -21,9 +21,6 @@
 /* So far inside a piece of a curve, as a share of it, is its end. */
 #define INSIDE		1e-6
 
-#define SHORT_CORNERS	100	/* lines shorter than so many corners stand for
-				 * a curve */
-
 struct making {
 	struct sections *to;
 	const struct interp_limits *l;
@@ -183,7 +180,7 @@ static bool is_short(const struct making *m, uint32_t i)
 	const struct interp_seg *s = &m->p->segs[i];
 
 	return s->kind == INTERP_LINE &&
-	       s->length_mm < SHORT_CORNERS * m->l->corner_mm;
+	       s->length_mm < SECTIONS_SHORT * m->l->corner_mm;
 }
 
 /* Behind the run that begins with segment @i: its length is in the same
@@ -206,8 +203,8 @@ static int add_run(struct making *m, uint32_t from, uint32_t to)
 	double *s = malloc(nodes * sizeof(*s));
 	double *x = malloc(nodes * n * sizeof(*x));
 	struct run r = { .n = nodes, .columns = n,
-			 .along = ways_along(&m->ways, from), .s_mm = s, .x = x,
-			 .corner_mm = m->l->corner_mm };
+			 .along = ways_along(&m->ways, from), .s_mm = s,
+			 .x = x };
 	int err = s && x ? 0 : -ENOMEM;
 
 	for (uint32_t k = 0; k < n; k++)

@@ -18,6 +18,9 @@
 
 #include <stddef.h>
 
+/* Lines shorter than so many corners stand for a curve. */
+#define SECTIONS_SHORT	100
+
 struct section {
 	uint32_t from, to;		/* its segments, up to but not with
 					 * @to */

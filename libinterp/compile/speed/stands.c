@@ -9,10 +9,9 @@
  * So a program is cut into moves, with a stand between them, where that takes
  * less time.
  *
- * A program has sides.  A side ends at a slow node, where what is allowed
- * becomes half or twice as much, and where the length of the path passes to
- * other axes.  At first a move stands between any two sides of which one is
- * harder.  Then the stands go, one after the other, that do not save time.
+ * A program has sides.  A side ends at a slow node, and where what is allowed
+ * becomes half or twice as much.  At first a move stands between any two sides.
+ * Then the stands go that save no time.
  */
 #include "speed/pass.h"
 
@@ -20,22 +19,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* One side is harder than the other if it may have more than so many times its
- * acceleration or jerk. */
-#define SOFTER		1.25
-
 /* -- Sides ----------------------------------------------------------------- */
 
-/* Only what a positioning may use counts. */
+/* What the segments of a side allow; only what a positioning may use counts. */
 struct side {
 	double a_least, a_most, j_least, j_most;
 	uint32_t last;			/* segment; UINT32_MAX: none */
-	bool begins_part;
 };
 
-static const struct side no_side = {
-	INFINITY, 0, INFINITY, 0, UINT32_MAX, false
-};
+static const struct side no_side = { INFINITY, 0, INFINITY, 0, UINT32_MAX };
 
 static struct side longer(const struct pass *w, const struct side *k,
 			  uint32_t i)
@@ -47,8 +39,7 @@ static struct side longer(const struct pass *w, const struct side *k,
 
 	return (struct side) {
 		smaller(k->a_least, a), larger(k->a_most, a),
-		smaller(k->j_least, j), larger(k->j_most, j), i,
-		k->begins_part
+		smaller(k->j_least, j), larger(k->j_most, j), i
 	};
 }
 
@@ -56,18 +47,6 @@ static bool is_one_side(const struct side *k)
 {
 	return k->a_most <= PASS_SIDE * k->a_least &&
 	       k->j_most <= PASS_SIDE * k->j_least;
-}
-
-static bool is_softer(double a, double b)
-{
-	return a > SOFTER * b || b > SOFTER * a;
-}
-
-static bool is_apart(const struct side *a, const struct side *b)
-{
-	return a->last < UINT32_MAX &&
-	       (b->begins_part || is_softer(a->a_least, b->a_least) ||
-		is_softer(a->j_least, b->j_least));
 }
 
 /* What a node is slow beside: the ceiling of a segment, but no more than a
@@ -94,28 +73,9 @@ static bool is_slow(const struct pass *w, uint32_t last, uint32_t i)
 	       node < PASS_SLOW * beside_mm_s(w, i, (double)s[i].node_mm_s);
 }
 
-/* Where the length passes to other axes, there is a stand already. */
-static bool is_part(const struct pass *w, uint32_t last)
+static void part_sides(struct pass *w, uint32_t end)
 {
-	return w->segs[last].flags & INTERP_SEG_STAND;
-}
-
-/* Between two sides: a stand, if one is harder.  Return: is there one? */
-static bool part_sides(struct pass *w, const struct side *was,
-		       const struct side *is)
-{
-	const bool apart = is_apart(was, is);
-
-	if (was->last < UINT32_MAX)
-		pass_set_stand(w, was->last, apart);
-	return apart;
-}
-
-/* Return: is there any? */
-static bool set_apart(struct pass *w, uint32_t end)
-{
-	struct side was = no_side, is = no_side;
-	bool any = false;
+	struct side is = no_side;
 
 	for (uint32_t i = 0; i < end; i++) {
 		struct side on;
@@ -124,25 +84,15 @@ static bool set_apart(struct pass *w, uint32_t end)
 			continue;
 		on = longer(w, &is, i);
 		if (is.last < UINT32_MAX &&
-		    (is_part(w, is.last) || !is_one_side(&on) ||
-		     is_slow(w, is.last, i))) {
-			const bool part = is_part(w, is.last);
-
-			any |= part_sides(w, &was, &is);
-			was = is;
-			is = no_side;
-			is.begins_part = part;
-			on = longer(w, &is, i);
+		    (!is_one_side(&on) || is_slow(w, is.last, i))) {
+			pass_set_stand(w, is.last, true);
+			on = longer(w, &no_side, i);
 		}
 		is = on;
 	}
-	return part_sides(w, &was, &is) || any;
 }
 
 /* -- Moves ----------------------------------------------------------------- */
-
-/* All stands together must save so much. */
-#define WORTH		0.97
 
 /* Behind the next stand. */
 static uint32_t behind_stand(const struct pass *w, uint32_t at, uint32_t to)
@@ -151,10 +101,6 @@ static uint32_t behind_stand(const struct pass *w, uint32_t at, uint32_t to)
 		at++;
 	return at < to ? at + 1 : to;
 }
-
-/* Of the time of the moves beside it, a stand must save so much.  It is little:
- * what is lost where one goes adds up over all that go. */
-#define JOIN_WORTH	0.998
 
 /* Stands before segment @to.  What is known holds as long as the moves beside
  * it stay. */
@@ -165,7 +111,6 @@ struct stands {
 	float *share;			/* of each stand, by the segment before
 					 * it; UNKNOWN */
 	float *alone_s;			/* of each move, by its last one */
-	uint8_t *stood;			/* does a move stand behind it? */
 };
 
 #define UNKNOWN		0.0f
@@ -209,20 +154,22 @@ static void find_shares(const struct stands *k)
 	}
 }
 
-/* Take the stands away that save too little, of those beside each other only
- * the one that saves least: what the others save depends on it.  Return: did
- * any go? */
+/* Take the stands away that save nothing; but not two beside each other, of
+ * which the one that saves less goes: what the other saves depends on it.
+ * Return: did any go? */
 static bool join_moves(const struct stands *k)
 {
-	float *share = k->share, before = UNKNOWN, is, next;
+	float *share = k->share, before = 0, is, next;
 	uint32_t prior = 0, at = behind_stand(k->pass, 0, k->to);
-	bool any = false;
+	bool any = false, goes = false;
 
 	for (is = at < k->to ? share[at - 1] : 0; at < k->to; is = next) {
 		const uint32_t end = behind_stand(k->pass, at, k->to);
+		const bool went = goes;
 
 		next = end < k->to ? share[end - 1] : 0;
-		if ((double)is >= JOIN_WORTH && is >= next && is > before) {
+		goes = !went && is >= 1 && is >= next && is >= before;
+		if (goes) {
 			pass_set_stand(k->pass, at - 1, false);
 			if (prior > 0)
 				share[prior - 1] = UNKNOWN;
@@ -230,65 +177,25 @@ static bool join_moves(const struct stands *k)
 			k->alone_s[end - 1] = UNKNOWN;
 			any = true;
 		}
-		before = is;
+		before = went ? 0 : is;
 		prior = at;
 		at = end;
 	}
 	return any;
 }
 
-#define JOIN_MOST	16		/* looks */
-
-static void join(const struct stands *k)
-{
-	bool more = true;
-
-	for (int i = 0; more && i < JOIN_MOST; i++) {
-		find_shares(k);
-		more = join_moves(k);
-	}
-}
-
-static int stands_make(struct stands *k, struct pass *w)
-{
-	const size_t n = w->end;
-	float *room = calloc(n, 3 * sizeof(*room) + 1);
-
-	*k = (struct stands) {
-		w, w->end, room, room + n, room + 2 * n,
-		(uint8_t *)(room + 3 * n)
-	};
-	return room ? 0 : -ENOMEM;
-}
-
-/* All stands that are left, or none. */
-static void keep_if_worth(const struct stands *k)
-{
-	const struct pass *w = k->pass;
-	const double s = pass_moves_s(w, 0, k->to, false, k->v2);
-
-	for (uint32_t i = 0; i < k->to; i++) {
-		k->stood[i] = w->segs[i].flags & INTERP_SEG_STAND;
-		pass_set_stand(k->pass, i, false);
-	}
-	if (s >= WORTH * pass_moves_s(w, 0, k->to, false, k->v2))
-		return;
-	for (uint32_t i = 0; i < k->to; i++)
-		pass_set_stand(k->pass, i, k->stood[i]);
-}
-
 int pass_stands(struct pass *w)
 {
-	struct stands k;
-	int err;
+	const size_t n = w->end;
+	float *room = calloc(n, 3 * sizeof(*room));
+	const struct stands k = { w, w->end, room, room + n, room + 2 * n };
 
-	if (!set_apart(w, w->end))
-		return 0;
-	err = stands_make(&k, w);
-	if (err == 0) {
-		join(&k);
-		keep_if_worth(&k);
-	}
-	free(k.v2);
-	return err;
+	if (!room)
+		return -ENOMEM;
+	part_sides(w, w->end);
+	do
+		find_shares(&k);
+	while (join_moves(&k));
+	free(room);
+	return 0;
 }

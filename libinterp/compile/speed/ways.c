@@ -10,9 +10,6 @@
  * of a line, of others before them far less. */
 #define COUNTS		0.25
 
-/* Beside the path, a rounding of it counts so often. */
-#define RATE_MOST	20
-
 static uint32_t columns_of(const struct interp_program *p, uint32_t axes)
 {
 	uint32_t columns = 0;
@@ -51,7 +48,7 @@ void ways_init(struct ways *w, const struct interp_limits *l,
 double ways_rate_off(const struct ways *w, uint32_t i, uint32_t k)
 {
 	const double size = smaller(larger(fabs(ways_rate(w, i, k)), 1),
-				    RATE_MOST);
+				    WAYS_RATE_MOST);
 
 	return w->tol[k] * (1 + size) / w->p->segs[i].length_mm;
 }

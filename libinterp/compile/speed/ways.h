@@ -10,6 +10,9 @@
 #include "interp/limits.h"
 #include "interp/program.h"
 
+/* Beside the path, a rounding of it counts so often. */
+#define WAYS_RATE_MOST	20
+
 /* A program, and what is the same for all of its segments. */
 struct ways {
 	const struct interp_program *p;
