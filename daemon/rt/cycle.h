@@ -162,8 +162,6 @@ struct cycle_ahead {
 	struct mover_limits l;		/* as they were when the move began, up
 					 * to the place where it stands: */
 	double stand_mm;		/* INFINITY: its goal is nearer */
-	uint32_t next;			/* the segment there, if it was not
-					 * looked farther; else 0 */
 	double entered_mm_s;		/* greatest speed at which it began */
 	double room_mm;			/* at constant speed nothing limits it
 					 * for this distance */

@@ -25,7 +25,7 @@
 /* Other plans tried in one cycle. */
 #define PLANS_MAX	4
 
-/* Segments looked at for what the axes allow. */
+/* Softer segments looked at; at the next one it stands. */
 #define SOFTER_MAX	512
 
 /* More than this was never promised to be met: the program lies. */
@@ -94,48 +94,7 @@ static bool is_softer(const struct mover_limits *l,
 struct soft {
 	struct mover_limits l;
 	double stand_mm;		/* INFINITY: everywhere */
-	uint32_t next;			/* the segment there, if it was not
-					 * looked farther; else 0 */
 };
-
-/*
- * Look on from segment @i.  It is the same for the whole of a move, so what can
- * be met can be met to its end.
- * @begins: a move begins there; else it goes on as far as nothing is softer.
- */
-static void look_on(const struct cycle *c, const struct ahead_move *w,
-		    uint32_t i, bool begins, struct soft *ret)
-{
-	const struct interp_program *p = &c->cursor.p;
-
-	ret->stand_mm = INFINITY;
-	ret->next = 0;
-	for (int n = 0; i < p->head->nsegs; n++) {
-		const struct interp_seg *s = &p->segs[i];
-		const uint32_t hop = w->toward > 0 ? s->softer_ahead :
-						     s->softer_behind;
-		const bool first = begins && n == 0;
-		struct mover_limits l = ret->l;
-
-		if (!first && is_beyond(c, w, i)) {
-			ret->stand_mm = w->goal_mm;
-			break;
-		}
-		law_soften(&l, s);
-		if (n == SOFTER_MAX)
-			ret->next = i;
-		if (ret->next || (!first && is_stand(c, w->toward, i)) ||
-		    (!begins && is_softer(&l, &ret->l))) {
-			ret->stand_mm = begin_mm(c, w->toward, i);
-			break;
-		}
-		ret->l = l;
-		if (hop == 0 || (w->toward > 0 ? hop >= p->head->nsegs - i :
-						 hop > i))
-			break;
-		i = w->toward > 0 ? i + hop : i - hop;
-	}
-}
 
 /* The nearer one of the goal and the stand. */
 static double end_mm(const struct ahead_move *w, double stand_mm)
@@ -144,13 +103,34 @@ static double end_mm(const struct ahead_move *w, double stand_mm)
 	       stand_mm : w->goal_mm;
 }
 
-/* From here to where the move ends or has to stand. */
+/* From here to where the move ends or has to stand.  It is the same for the
+ * whole of a move, so what can be met can be met to its end. */
 static struct soft limits_of(const struct cycle *c, const struct ahead_move *w)
 {
-	struct soft s = { .l = w->l };
+	const struct interp_program *p = &c->cursor.p;
+	struct soft ret = { w->l, INFINITY };
+	uint32_t i = lookahead_index(c, w->toward);
 
-	look_on(c, w, lookahead_index(c, w->toward), true, &s);
-	return s;
+	for (int n = 0; i < p->head->nsegs; n++) {
+		const struct interp_seg *s = &p->segs[i];
+		const uint32_t hop = w->toward > 0 ? s->softer_ahead :
+						     s->softer_behind;
+
+		if (n > 0 && is_beyond(c, w, i)) {
+			ret.stand_mm = w->goal_mm;
+			break;
+		}
+		if (n == SOFTER_MAX || (n > 0 && is_stand(c, w->toward, i))) {
+			ret.stand_mm = begin_mm(c, w->toward, i);
+			break;
+		}
+		law_soften(&ret.l, s);
+		if (hop == 0 || (w->toward > 0 ? hop >= p->head->nsegs - i :
+						 hop > i))
+			break;
+		i = w->toward > 0 ? i + hop : i - hop;
+	}
+	return ret;
 }
 
 /* A move that goes on to another goal stands at the first one, if beyond it the
@@ -168,20 +148,6 @@ static void go_on_to(struct cycle *c, const struct ahead_move *w)
 	if (is_softer(&s.l, &a->l))
 		return;
 	a->stand_mm = s.stand_mm;
-	a->next = s.next;
-}
-
-/* Not all of the way was looked at when the move began: some more in each cycle
- * is farther than it goes. */
-static void go_on(struct cycle *c, const struct ahead_move *w)
-{
-	struct soft s = { .l = c->ahead.l };
-
-	if (c->ahead.next == 0)
-		return;
-	look_on(c, w, c->ahead.next, false, &s);
-	c->ahead.stand_mm = s.stand_mm;
-	c->ahead.next = s.next;
 }
 
 /* Does it go the other way, or brake from that?  Up to where it stands, what it
@@ -211,24 +177,16 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 	c->cut_short = false;
 	if (!short_of && a->state == c->state && a->toward == w->toward &&
 	    a->override == by && a->goal_mm == w->goal_mm &&
-	    !mover_is_standing(&c->mover)) {
-		go_on(c, w);
+	    !mover_is_standing(&c->mover))
 		return;
-	}
 	turns = is_turning(c, w);
 	if (a->state != c->state || mover_is_standing(&c->mover)) {
 		const struct soft s = limits_of(c, w);
 
 		a->l = s.l;
-		if (s.next == 0)
-			slow_limits(c, w, end_mm(w, s.stand_mm), &a->l);
-		else
-			a->l.v_max_mm_s = INFINITY;
+		slow_limits(c, w, end_mm(w, s.stand_mm), &a->l);
 		a->stand_mm = s.stand_mm;
-		a->next = s.next;
-	} else if (turns) {
-		a->next = 0;
-	} else {
+	} else if (!turns) {
 		go_on_to(c, w);
 	}
 	a->turns = turns;
