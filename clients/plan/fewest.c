@@ -76,7 +76,9 @@ static bool prove(const struct fewest *f, const struct block *b, double mm,
 	return false;
 }
 
-bool fewest_keeps(struct fewest *f, uint32_t i, uint32_t k, double mm)
+/* Does the block from node @i to node @k keep @mm?  Several threads may ask at
+ * once, about different blocks. */
+static bool fewest_keeps(struct fewest *f, uint32_t i, uint32_t k, double mm)
 {
 	double *proved = &f->proved[(size_t)i * f->n + k];
 	double *refuted = &f->refuted[(size_t)i * f->n + k];

@@ -37,10 +37,6 @@ int fewest_init(struct fewest *f, const struct job *j,
 		double (*q)[INTERP_NAXES], uint32_t n);
 void fewest_free(struct fewest *f);
 
-/** fewest_keeps() - does the block from node @i to node @k keep @mm?  Several
- *  threads may ask at once, about different blocks. */
-bool fewest_keeps(struct fewest *f, uint32_t i, uint32_t k, double mm);
-
 /**
  * fewest_greedy() - from each node take the longest block that is proved.
  *

@@ -174,7 +174,8 @@ static int check_compensation(struct check *q)
 			       "together", q->c->contour.method);
 }
 
-double config_longest_mm(const struct machine_config *c, int *ret_axis)
+/* The longest travel of any linear axis, @ret_axis; 0: there is none. */
+static double config_longest_mm(const struct machine_config *c, int *ret_axis)
 {
 	double most = 0;
 

@@ -383,13 +383,6 @@ int config_read(struct machine_config *c, const char *path,
 		struct interp_diag *diag);
 
 /**
- * config_longest_mm() - the longest travel of any linear axis; 0: there is
- * none.
- * @ret_axis: which.
- */
-double config_longest_mm(const struct machine_config *c, int *ret_axis);
-
-/**
  * config_jump_fits() - is no axis's travel too short for a jump of @mm?
  * @wanted: what would be accepted, if not.
  */

@@ -23,7 +23,8 @@ uint32_t manual_unhomed(const struct cycle *c)
 	return (axes & ~c->manual.homed) | c->manual.unplaced;
 }
 
-uint32_t manual_by_drive(const struct cycle *c)
+/* Bits of the axes whose drives home by themselves. */
+static uint32_t manual_by_drive(const struct cycle *c)
 {
 	uint32_t axes = 0;
 

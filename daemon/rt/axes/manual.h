@@ -117,9 +117,6 @@ int manual_home(struct cycle *c, uint32_t axis);
  */
 int manual_place(struct cycle *c, uint32_t axis, double mm);
 
-/** manual_by_drive() - bits of the axes whose drives home by themselves. */
-uint32_t manual_by_drive(const struct cycle *c);
-
 /** manual_in_phase() - bit of the axis that is in this phase of homing. */
 uint32_t manual_in_phase(const struct cycle *c, enum home_phase phase);
 

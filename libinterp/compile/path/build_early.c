@@ -32,7 +32,9 @@ static bool may_be_early(const struct interp_build *b)
 	       b->length_mm > o->far_mm && !is_timed(b);
 }
 
-int build_early(struct interp_build *b)
+/* If the place that the options name is passed, leave out what is before it.
+ * All segments are whole.  Return: 0 or -ENOMEM. */
+static int build_early(struct interp_build *b)
 {
 	struct interp_diag diag;
 	int err;

@@ -53,8 +53,11 @@ static int keep(struct build_fit *f, const double at_mm[INTERP_NAXES],
 	return 0;
 }
 
-int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
-		  const struct interp_build_word *w, struct interp_diag *diag)
+/* Hold a line back. */
+static int build_fit_add(struct interp_build *b,
+			 const double end_mm[INTERP_NAXES],
+			 const struct interp_build_word *w,
+			 struct interp_diag *diag)
 {
 	const double *here = interp_build_here(b);
 	struct build_fit *f = &b->fit;

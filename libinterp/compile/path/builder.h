@@ -240,12 +240,6 @@ int build_count_curve(struct interp_build *b,
  *  Return: 0 or -ENOMEM. */
 int build_segs_room(struct interp_build *b);
 
-/**
- * build_early() - if the place that the options name is passed, leave out what
- * is before it.  All segments are whole.  Return: 0 or -ENOMEM.
- */
-int build_early(struct interp_build *b);
-
 /** build_early_entry() - how that begins, now that all is read. */
 void build_early_entry(const struct interp_build *b,
 		       struct interp_build_entry *ret);
@@ -261,10 +255,6 @@ int build_step(struct interp_build *b, const struct build_step *s,
 /** build_line() - interp_build_line() without holding the line back. */
 int build_line(struct interp_build *b, const double end_mm[INTERP_NAXES],
 	       const struct interp_build_word *w, struct interp_diag *diag);
-
-/** build_fit_add() - hold a line back. */
-int build_fit_add(struct interp_build *b, const double end_mm[INTERP_NAXES],
-		  const struct interp_build_word *w, struct interp_diag *diag);
 
 /**
  * build_travel() - the first and the last pulse at which axis @axis of the

@@ -44,8 +44,9 @@ static void run_add(struct greedy_runs *r, bool main, int64_t pulses)
 	r->run[r->n - 1] += (uint32_t)pulses;
 }
 
-void greedy_plan_from(const struct greedy_line *l, bool main_first,
-		      struct greedy_runs *r)
+/* The path that begins on the given axis. */
+static void greedy_plan_from(const struct greedy_line *l, bool main_first,
+			     struct greedy_runs *r)
 {
 	int64_t m = 0, s = 0;
 	bool main = main_first;

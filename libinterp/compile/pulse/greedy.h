@@ -38,10 +38,6 @@ struct greedy_runs {
 	bool main_first;
 };
 
-/** greedy_plan_from() - the path that begins on the given axis. */
-void greedy_plan_from(const struct greedy_line *l, bool main_first,
-		      struct greedy_runs *r);
-
 /** greedy_plan() - the better of the two. */
 void greedy_plan(const struct greedy_line *l, struct greedy_runs *r);
 

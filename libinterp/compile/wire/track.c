@@ -241,7 +241,8 @@ static int add_lead(struct track_work *w, int i)
 	return 0;
 }
 
-int track_lay(struct track_work *w)
+/* The raw track.  Return: 0 or -ENOMEM. */
+static int track_lay(struct track_work *w)
 {
 	int err;
 

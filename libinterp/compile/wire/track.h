@@ -181,9 +181,6 @@ double track_shift(const struct track_work *w, uint32_t i);
 /** track_forget() - free what @w owns. */
 void track_forget(struct track_work *w);
 
-/** track_lay() - the raw track. Return: 0 or -ENOMEM. */
-int track_lay(struct track_work *w);
-
 /** clear_init() - find crossings, make the outline ready for questions.
  *  Return: 0, -ENOMEM or -E2BIG: too many crossings. */
 int clear_init(struct track_work *w);

@@ -18,7 +18,8 @@
 #define ROUNDING	1e-13		/* relative rounding error of a
 					 * length */
 
-double nurbs_span_speed(const struct interp_nurbs_eval *e, double u)
+/* Length per parameter at @u, in the span that was entered. */
+static double nurbs_span_speed(const struct interp_nurbs_eval *e, double u)
 {
 	struct interp_nurbs_point p;
 

@@ -37,12 +37,6 @@ uint32_t nurbs_basis(const struct interp_nurbs *c, double u,
 		     double d[INTERP_NURBS_ORDER_MAX]);
 
 /**
- * nurbs_span_speed() - length per parameter at @u, in the span that was
- * entered.
- */
-double nurbs_span_speed(const struct interp_nurbs_eval *e, double u);
-
-/**
  * nurbs_span_next() - go to the next span that is not empty; false: there is
  * none.
  */

@@ -54,7 +54,8 @@ bool pair_tube_ok(int64_t a, int64_t b, struct pair_tube t)
 	return 2 * (pair_half_width(a, b, t) / g) + 1 >= (a + b) / g;
 }
 
-int64_t pair_burst(int64_t a, int64_t b, int64_t half_width)
+/* B, at least 1. */
+static int64_t pair_burst(int64_t a, int64_t b, int64_t half_width)
 {
 	const int64_t g = gcd(a, b);
 	const int64_t burst = (2 * (half_width / g) + 1 - b / g) / (a / g);

@@ -80,9 +80,6 @@ int64_t pair_half_width(int64_t a, int64_t b, struct pair_tube t);
 /** pair_tube_ok() - can any path of one axis at a time keep to the tube? */
 bool pair_tube_ok(int64_t a, int64_t b, struct pair_tube t);
 
-/** pair_burst() - B, at least 1. */
-int64_t pair_burst(int64_t a, int64_t b, int64_t half_width);
-
 /**
  * pair_set() - put the pair at its start or its end.  p->a >= p->b >= 0 are
  * set already.
