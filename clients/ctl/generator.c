@@ -332,6 +332,17 @@ static int walk_end(struct walk *w, int err)
 	return w->odd ? 1 : 0;
 }
 
+static int no_walk(json_t *o)
+{
+	const bool there = is_true(o, "there");
+
+	fprintf(stderr, "edmctl: generator walk: %s\n", there ?
+		"the generator tells no value that reaches it; [generator] "
+		"told_peak_a = ..., or edmctl generator set FIELD VALUE and "
+		"look" : "edmd is not there; systemctl status edmd");
+	return there ? EX_CONFIG : EX_UNAVAILABLE;
+}
+
 static int walk(struct ctl *c)
 {
 	struct walk w = { .ctl = c, .field = "" };
@@ -344,11 +355,9 @@ static int walk(struct ctl *c)
 	fields = json_object_get(o, "fields");
 	w.steps = count_steps(c, fields);
 	if (w.steps == 0) {
-		fprintf(stderr, "edmctl: generator walk: the generator tells "
-			"no value that reaches it; [generator] told_peak_a = "
-			"..., or edmctl generator set FIELD VALUE and look\n");
+		err = no_walk(o);
 		json_decref(o);
-		return EX_CONFIG;
+		return err;
 	}
 	talk_catch_signals();
 	line_init(&w.line);

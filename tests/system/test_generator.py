@@ -54,6 +54,15 @@ def test_what_cannot_be_tried_is_refused_with_what_would_be(knobs):
     assert "[generator] told_peak_a" in p.stderr
 
 
+def test_a_walk_without_edmd_does_not_blame_the_machine_file(knobs):
+    knobs.kill("edmd")
+    rig.until(lambda: "edmd is not there" in knobs.ctl("generator").stdout)
+    p = knobs.ctl("generator", "walk")
+    assert p.returncode == 69
+    assert "edmd is not there; systemctl status edmd" in p.stderr
+    knobs.start_edmd()
+
+
 def test_it_is_tried_without_a_job_only(knobs):
     assert knobs.ctl("generator", "set", "peak_a", "default").returncode == 0
     assert knobs.client.submit(rig.SLOW_JOB, "job", hold=True).code == 0
