@@ -194,11 +194,16 @@ static void these_are_walked_or_refused(void **st)
 		"G91 F6000\nG1 X0.05\nG2 X0.001 Y0.001 I0.001 J0.001\nM2\n",
 		"G90 F6000\nG1 X1.726\nG3 X1.727 Y-0.001 I-0.001 J0.001\n"
 		"M2\n",
+		"G90 F1521\nG1 Y2.43\nG3 X-0.109 Y2.09 I-0.014 J-0.183\n"
+		"G92 X0 Y0\nG6.2 P4 K0 X0 Y0 R1\nK0 X0 Y0 R0.32\n"
+		"K0 X1.958 Y-0.005 R2.81\nK0 X3.204 Y0.004 R2.39\n"
+		"K1 X0.26 Y-0.017 R1.53\nK2 X0.006 Y-0.016 R2.91\n"
+		"K3 X0.004 Y-0.286 R2.75\nK4\nK4\nK4\nK4\nM2\n",
 	};
 	uint64_t s = seed;
 
 	(void)st;
-	for (int i = 0; i < 3; i++) {
+	for (int i = 0; i < 4; i++) {
 		static struct job j;
 
 		j = (struct job) { .dialect = "generic", .a_mm_s2 = 500,

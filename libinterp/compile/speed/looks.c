@@ -23,7 +23,6 @@ struct making {
 	struct look_all *to;
 	struct sections sections;
 	struct ways ways;
-	double pulse_mm;		/* the finest */
 };
 
 /* -- Lines ----------------------------------------------------------------- */
@@ -76,7 +75,6 @@ static int look(struct making *m, const struct section *s, double s_mm,
 		struct looks *of)
 {
 	struct look_all *to = m->to;
-	const bool is_curve = to->p->segs[s->from].kind == INTERP_CURVE;
 	const size_t each = to->axes.n * INTERP_AXES_WAY;
 	double way[INTERP_NAXES * INTERP_AXES_WAY];
 	struct interp_straight straight;
@@ -86,10 +84,6 @@ static int look(struct making *m, const struct section *s, double s_mm,
 	    grow_array(&to->way, &to->room, each * sizeof(float)) < 0)
 		return -ENOMEM;
 	sections_way(&m->sections, s, s_mm, way);
-	for (uint32_t k = 0; is_curve && k < to->axes.n; k++)
-		if (s->along >> k & 1)
-			interp_axes_overlook(way + k * INTERP_AXES_WAY,
-					     m->pulse_mm);
 	straight = interp_axes_straight(&to->axes, way);
 	of->a_mm_s2 = least(of->a_mm_s2, straight.a_mm_s2);
 	of->j_mm_s3 = least(of->j_mm_s3, straight.j_mm_s3);
@@ -281,10 +275,6 @@ int looks_make(struct look_all *ret, const struct interp_limits *l,
 	if (!ret->of)
 		return -ENOMEM;
 	ways_init(&m.ways, l, p);
-	m.pulse_mm = INFINITY;
-	for (uint32_t k = 0; k < ret->axes.n; k++)
-		m.pulse_mm = smaller(m.pulse_mm,
-				     p->head->pulse_mm[p->head->column[k]]);
 	for (uint32_t i = 0; i < p->head->nsegs; i++) {
 		ret->of[i].own_mm_s = p->segs[i].feed_max_mm_s;
 		ret->of[i].node_mm_s = INFINITY;

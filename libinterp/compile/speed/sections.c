@@ -141,6 +141,11 @@ void sections_way(struct sections *w, const struct section *s, double s_mm,
 		sections_part_way(s->part, s_mm, ret);
 	else
 		seg_way(w, s->from, s_mm, ret);
+	for (uint32_t k = 0; w->p->segs[s->from].kind == INTERP_CURVE &&
+			     k < w->p->head->naxes; k++)
+		if (s->along >> k & 1)
+			interp_axes_overlook(ret + k * INTERP_AXES_WAY,
+					     w->pulse_mm);
 }
 
 /* -- Sections -------------------------------------------------------------- */
@@ -296,7 +301,10 @@ int sections_make(struct sections *ret, const struct interp_limits *l,
 			    .axes = sections_axes(l, p) };
 	int err = 0;
 
-	*ret = (struct sections) { .p = p };
+	*ret = (struct sections) { .p = p, .pulse_mm = INFINITY };
+	for (uint32_t k = 0; k < p->head->naxes; k++)
+		ret->pulse_mm = smaller(ret->pulse_mm,
+					p->head->pulse_mm[p->head->column[k]]);
 	ways_init(&m.ways, l, p);
 	for (uint32_t i = 1, end; err == 0 && i + 1 < p->head->nsegs; i = end) {
 		end = i + 1;

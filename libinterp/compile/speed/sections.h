@@ -31,6 +31,7 @@ struct section {
 
 struct sections {
 	const struct interp_program *p;
+	double pulse_mm;		/* the finest */
 	size_t n, room;
 	struct section *at;
 	struct interp_at_curve curve;	/* that was looked at last */
@@ -45,7 +46,8 @@ int sections_make(struct sections *ret, const struct interp_limits *l,
 		  const struct interp_program *p);
 
 /** sections_way() - r', r'' and r''' of each column at the place @s_mm, as
- *  interp/axes.h takes them. */
+ *  speed/along.h takes them.  A bend of a curve that is tighter than a pulse is
+ *  no bend. */
 void sections_way(struct sections *w, const struct section *s, double s_mm,
 		  double *ret);
 
