@@ -393,6 +393,37 @@ def test_a_command_works_without_apprise_and_paho(shop, tmp_path):
     json.loads(pathlib.Path(f"{out}.json").read_text())
 
 
+def test_of_two_with_one_folder_the_second_is_refused(shop, hook):
+    with notify(shop, f"[to.me]\nurl = {hook.url}") as config:
+        r = subprocess.run(run(config), env=ENV, timeout=60,
+                           capture_output=True, text=True)
+        assert r.returncode == 78
+        assert "another edm-notify uses it; [notify] state = " in r.stderr
+
+
+def test_a_file_that_is_wrong_sends_nothing_of_what_waits(shop, tmp_path):
+    out = tmp_path / "called"
+    config, state = tmp_path / "notify.ini", tmp_path / "waiting"
+    state.mkdir()
+    (state / "waits-me.json").write_text(json.dumps([dict(
+        cause="c", kind="stands", machine=shop.name, job="j", title="t",
+        text="x", link="", utime=1)]))
+    config.write_text(f"[notify]\nmachine = {shop.name}\nstate = {state}\n"
+                      f"[to.me]\nurl = command:touch {out}\n"
+                      "[to.b]\nurl = mqtt://x\n")
+    env = ENV | {"EDM_KEY": str(key_of(shop))}
+    for _ in range(5):
+        r = subprocess.run(run(config), env=env, timeout=60,
+                           capture_output=True, text=True)
+        assert r.returncode == 78 and "a topic" in r.stderr
+    assert not out.exists()
+    config.write_text(config.read_text().replace("mqtt://x", "command:true"))
+    p = subprocess.Popen(run(config), env=env, stderr=subprocess.DEVNULL)
+    rig.until(out.exists, 30)
+    p.terminate()
+    p.wait(20)
+
+
 def test_apprise_sends_it(shop, hook):
     pytest.importorskip("apprise")
     url = hook.url.replace("http://", "json://")

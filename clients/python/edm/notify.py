@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import configparser
+import fcntl
 import importlib
 import json
 import math
@@ -252,6 +253,9 @@ class Target:
         way_of(url)
         self._kept = Kept(state / f"waits-{quote(name, safe='')}.json")
         self._new, self._down = threading.Condition(), False
+
+    def start(self) -> None:
+        """From now on what waits is sent."""
         threading.Thread(target=self._run, daemon=True).start()
 
     def put(self, m: Message) -> None:
@@ -547,11 +551,28 @@ class Service:
                 self.look(c)
 
 
+def keep_others_out(state: Path) -> None:
+    """Two would send what waits there twice.  Raises Wrong."""
+    try:
+        # It is open until this process ends.
+        fd = os.open(state / "lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC,
+                     0o600)
+        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise Wrong(f"{state}: another edm-notify uses it; [notify] state = "
+                    "another folder") from None
+    except OSError:     # nothing is kept there, and nothing comes twice
+        pass
+
+
 def serve(path: str) -> int:
     """Never gives up: edmd-jobs may come later."""
     rules, to = read_file(path)
     targets = [Target(n, url, kinds, rules.state)
                for n, (url, kinds) in to.items()]
+    keep_others_out(rules.state)
+    for t in targets:
+        t.start()
     service = Service(rules, Caller(rules, targets))
     say(f"machine {rules.machine}, calls {' '.join(to)}")
     while True:
