@@ -774,6 +774,9 @@ static void verb_start(struct jobs *j, const struct verb *v,
 			     "no such job; edmctl queue lists them");
 	} else if (*c->job && (!here || job.n != q->job.n)) {
 		start_behind(j, c, &job);
+	} else if (here && q->loading) {
+		q->job.hold = false;
+		start_behind(j, c, &q->job);
 	} else if (here) {
 		verb_of_stand(j, v, c);
 	} else if (store_head(j->store, &job) == 0) {

@@ -41,3 +41,14 @@ def test_every_command_is_carried_out(tmp_path):
         assert done >= 12
         o = m.ctl("offset").stdout
         assert re.match(r"G54 +X +-?0\.\d+\* Y +-?0\.\d+\* Z +-5\.000\d\*", o), o
+
+
+def test_a_start_while_the_job_is_being_loaded_is_kept(tmp_path):
+    """Also of a job that was sent to be held."""
+    with rig.Machine(tmp_path, rig.NULL_MACHINE) as m:
+        m.start()
+        for i in range(30):
+            assert m.client.submit(rig.QUICK_JOB, f"j{i}", hold=True).code == 0
+            a = m.client.ask("start")
+            assert a.code == 0, (i, a.body)
+            m.client.job_where(f"j{i}", "done")
