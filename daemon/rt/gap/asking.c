@@ -168,8 +168,7 @@ bool asking_hand(struct cycle *c)
 	return true;
 }
 
-/* What a person set for another job is not known, nor what the generator has
- * lost since: it is asked anew. */
+/* What a person set for another job is not known. */
 static void begin_job(struct cycle *c)
 {
 	struct asking *a = &c->asking;
@@ -179,8 +178,6 @@ static void begin_job(struct cycle *c)
 	a->path = c->out.path;
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		a->hand[i] = (double)NAN;
-	a->needed = ++a->version;
-	a->age = 0;
 }
 
 /* Somebody started it again. */

@@ -16,8 +16,6 @@
  * Without a job, values may be asked for to try the generator.  A job takes
  * them back, and so does the end of a lease.
  *
- * Each job asks anew, also for what the one before it asked for.
- *
  * A generator on registers keeps the last value that it was asked for.  Where
  * nobody asks any more (a condition that does not give it, a set that was taken
  * back, the end of a trial), it is asked for the one that it told before.  If
