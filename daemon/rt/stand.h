@@ -21,8 +21,8 @@ struct stand {
 	uint32_t of;			/* what it asks for: the electrode's
 					 * number; a bit of each field to set */
 	bool confirmed;
-	uint32_t n;			/* the number of this stand: how many
-					 * there were */
+	uint32_t n;			/* the number of this stand; the next
+					 * one has one more */
 };
 
 /* What is shown. */

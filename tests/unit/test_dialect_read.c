@@ -192,37 +192,33 @@ static void note(void *arg, uint32_t line, const char *text)
 	snprintf(all + n, 512 - n, "%u %.20s|", line, text);
 }
 
-static void what_is_ignored_is_noted_once(void **state)
+static void check_notes(const char *dialect, const char *text,
+			const char *wanted)
 {
-	static const char text[] = "G64 P.1\nG64\nG80 G0 X1\nG80 X2\n";
-	struct compiled c = compile_ready("linuxcnc");
+	struct compiled c = compile_ready(dialect);
 	char all[512] = "";
 	const struct interp_notes notes = { note, all, false };
 
-	(void)state;
 	c.o.nc.notes = &notes;
-	compile_bytes(&c, text, sizeof(text) - 1);
+	compile_bytes(&c, text, strlen(text));
 	assert_int_equal(c.rc, 0);
-	assert_string_equal(all,
-			    "1 G64 is ignored: ever|3 G80 is ignored: ther|");
+	assert_string_equal(all, wanted);
 	compile_done(&c);
+}
+
+static void what_is_ignored_is_noted_once(void **state)
+{
+	(void)state;
+	check_notes("linuxcnc", "G64 P.1\nG64\nG80 G0 X1\nG80 X2\n",
+		    "1 G64 is ignored: ever|3 G80 is ignored: ther|");
 }
 
 /* M6 beside its T word is part of it: what is noted of T is true of both. */
 static void m6_beside_its_t_word_is_not_noted(void **state)
 {
-	static const char text[] = "T3 M6\nG0 X1\nM6\nM30\n";
-	struct compiled c = compile_ready("generic");
-	char all[512] = "";
-	const struct interp_notes notes = { note, all, false };
-
 	(void)state;
-	c.o.nc.notes = &notes;
-	compile_bytes(&c, text, sizeof(text) - 1);
-	assert_int_equal(c.rc, 0);
-	assert_string_equal(all,
-			    "1 T3 shifts nothing: t|3 M6 changes nothing: |");
-	compile_done(&c);
+	check_notes("generic", "T3 M6\nG0 X1\nM6\nM30\n",
+		    "1 T3 shifts nothing: t|3 M6 changes nothing: |");
 }
 
 /* A % ends the text, but only where it is alone. */
