@@ -150,7 +150,8 @@ struct io_outputs {
 	double pulse[INTERP_NGENERATOR];	/* asked of the generator, by
 					 * enum interp_tech_id; NAN: its own
 					 * setting */
-	uint32_t asked;			/* another number: pulse has changed */
+	uint32_t asked;			/* another number: pulse has changed,
+					 * or another job asks for it */
 	double off_path_mm;		/* way that an escape has led away from
 					 * the path; 0: on the path */
 };

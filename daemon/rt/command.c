@@ -298,7 +298,7 @@ enum cycle_answer cycle_load_at(struct cycle *c, const struct interp_cursor *at,
 	c->escape = (struct escape) { .nlegs = 0 };
 	if (!conditions_begin(c))
 		return ANSWER_BAD_ARGUMENT;
-	asking_try(c, INTERP_NGENERATOR, (double)NAN, false);
+	asking_begin(c);
 	c->out.path++;
 	c->loaded = true;
 	stand_end(c);

@@ -31,7 +31,7 @@ static void note_machine(struct cycle *c, const struct io_inputs *in)
 		fault_note(f, FAULT_DOOR);
 	if (in->dielectric_low)
 		fault_note(f, FAULT_DIELECTRIC);
-	if (in->generator.trouble)
+	if (in->generator.trouble && c->asking.begun)
 		fault_note(f, FAULT_GENERATOR);
 	if (in->wire_broken || (in->plc.alive && !in->plc.wire_whole))
 		watch_wire(c);

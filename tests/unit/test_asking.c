@@ -387,6 +387,49 @@ static void what_a_person_sets_is_asked_for_at_each_change(void **state)
 	rig_free(&r);
 }
 
+/* It still asks for the values of before when it comes to its begin: a person
+ * sets those of the first cut, each time. */
+static void a_job_stands_with_the_values_of_its_first_cut(void **state)
+{
+	struct cycle_config k = limited_config(true);
+	struct slow g = slow_of(1, 0);
+	struct rig r;
+
+	(void)state;
+	k.asking.field[INTERP_TECH_ON_US].by_hand = true;
+	rig_conds(&r, &k, 1, 1);
+	for (int job = 0; job < 3; job++) {
+		for (int i = 0; i < 3000 && !r.c.asking.stands; i++)
+			period(&r, &g, SPARKING_V);
+		assert_int_equal(r.c.asking.stands, 1u << INTERP_TECH_ON_US);
+		for (int i = 0; i < 50; i++) {
+			period(&r, &g, SPARKING_V);
+			assert_int_equal(r.c.state, STATE_HOLD);
+			assert_int_equal(r.out.cond_letter, 'C');
+			assert_true(r.c.out.pulse[INTERP_TECH_ON_US] == 8);
+		}
+		/* The next one has another person, or another shift. */
+		assert_int_equal(tell(&r, CYCLE_STOP), ANSWER_DONE);
+		for (int i = 0; i < 50 && r.c.loaded; i++)
+			period(&r, &g, SPARKING_V);
+		assert_int_equal(cycle_load(&r.c, &r.c.cursor.p), ANSWER_DONE);
+		assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	}
+	while (!r.c.asking.stands)
+		period(&r, &g, SPARKING_V);
+	assert_int_equal(tell(&r, CYCLE_CONFIRM), ANSWER_DONE);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	while (!r.out.power)
+		period(&r, &g, SPARKING_V);
+	/* As where a timed part is over: what is set, is set. */
+	r.c.out.path++;
+	for (int i = 0; i < 20; i++) {
+		period(&r, &g, SPARKING_V);
+		assert_true(r.out.power);
+	}
+	rig_free(&r);
+}
+
 static void a_set_that_does_not_reach_the_generator_is_refused(void **state)
 {
 	struct cycle_config k = limited_config(false);
@@ -835,6 +878,7 @@ int main(void)
 		cmocka_unit_test(one_that_never_has_it_never_gets_a_spark),
 		cmocka_unit_test(trouble_ends_the_sparks_in_its_period),
 		cmocka_unit_test(what_a_person_sets_is_asked_for_at_each_change),
+		cmocka_unit_test(a_job_stands_with_the_values_of_its_first_cut),
 		cmocka_unit_test(a_set_that_does_not_reach_the_generator_is_refused),
 		cmocka_unit_test(the_servos_voltage_is_asked_for_where_it_is_laid_out),
 		cmocka_unit_test(a_set_that_does_not_reach_it_any_more_is_not_restored),

@@ -155,6 +155,13 @@ static void shop_open_with(struct shop *s, int cuts, const char *more)
 	shop_load(s, cuts, &k);
 }
 
+static void set_registers(const uint16_t to[NREGISTERS])
+{
+	pthread_mutex_lock(&slave.lock);
+	memcpy(slave.map->tab_registers, to, NREGISTERS * sizeof(*to));
+	pthread_mutex_unlock(&slave.lock);
+}
+
 static void shop_open(struct shop *s, int cuts)
 {
 	shop_open_with(s, cuts, "");
@@ -247,6 +254,58 @@ static void no_spark_has_another_condition_however_late_it_is(void **state)
 	}
 	assert_int_equal(shop.r.c.outcome, OUTCOME_DONE);
 	assert_true(shop.sparks > 1000 && shop.waits > 30);
+}
+
+/* Before the first period of the cycle. */
+static void until_told(struct shop *s, int field, double value)
+{
+	for (int i = 0; i < TURNS_MOST &&
+	     s->r.in.generator.told[field] != value; i++) {
+		s->axes.read(s->axes.self, &s->r.in);
+		s->axes.write(s->axes.self, &s->r.out);
+		usleep(TURN_US);
+	}
+	assert_true(s->r.in.generator.told[field] == value);
+}
+
+static void until_done(struct shop *s)
+{
+	for (int i = 0; i < TURNS_MOST && s->r.c.loaded; i++)
+		turn(s);
+	assert_int_equal(s->r.c.outcome, OUTCOME_DONE);
+}
+
+static void until_trouble(struct shop *s)
+{
+	for (int i = 0; i < TURNS_MOST && !s->r.in.generator.trouble; i++) {
+		turn(s);
+		usleep(TURN_US);
+	}
+	assert_true(s->r.in.generator.trouble);
+}
+
+/* It has what the job asks for before any job: so nothing is asked between two
+ * of them. */
+static void what_it_loses_between_jobs_is_no_fault(void **state)
+{
+	static const uint16_t c200[NREGISTERS] = {
+		60, 80, 200, 180, 0, 0, 150
+	};
+	struct shop *s = &shop;
+
+	(void)state;
+	shop_open(s, 1);
+	s->r.c.config.gap.servo_v = 15;
+	set_registers(c200);
+	until_told(s, INTERP_TECH_PEAK_A, 6);
+	until_done(s);
+	set_registers((const uint16_t[NREGISTERS]) { 0 });
+	until_trouble(s);
+	assert_int_equal(cycle_load(&s->r.c, &s->r.m.p), ANSWER_DONE);
+	for (int i = 0; i < 3; i++)
+		turn(s);
+	assert_int_equal(tell(&s->r, CYCLE_START), ANSWER_DONE);
+	until_done(s);
 }
 
 static void until_fault(struct shop *s)
@@ -649,6 +708,7 @@ int main(void)
 		WITH_SHOP(c200_reaches_it_whole_before_the_first_spark),
 		WITH_SHOP(what_it_does_not_tell_has_settle_ms),
 		WITH_SHOP(no_spark_has_another_condition_however_late_it_is),
+		WITH_SHOP(what_it_loses_between_jobs_is_no_fault),
 		WITH_SHOP(what_it_refuses_never_sparks_and_is_a_fault),
 		WITH_SHOP(one_that_loses_its_values_ends_the_sparks),
 		WITH_SHOP(what_it_lost_behind_a_cut_link_ends_the_sparks),

@@ -168,16 +168,15 @@ bool asking_hand(struct cycle *c)
 	return true;
 }
 
-/* What a person set for another job is not known. */
-static void begin_job(struct cycle *c)
+void asking_begin(struct cycle *c)
 {
 	struct asking *a = &c->asking;
 
-	if (a->path == c->out.path)
-		return;
-	a->path = c->out.path;
+	asking_try(c, INTERP_NGENERATOR, (double)NAN, false);
 	for (int i = 0; i < INTERP_NGENERATOR; i++)
 		a->hand[i] = (double)NAN;
+	a->stands = 0;
+	a->begun = false;
 }
 
 /* Somebody started it again. */
@@ -234,11 +233,13 @@ static double against_arcs(const struct cycle *c, double off_us)
 static void ask(struct cycle *c)
 {
 	struct asking *a = &c->asking;
+	const bool begins = !a->begun && state_duty[c->state].power;
 	double off_us;
 
-	if (!is_the_places(c)) {
+	if (begins || !is_the_places(c)) {
 		if (!is_dark(c))
 			return;
+		a->begun = a->begun || begins;
 		for (int i = 0; i < INTERP_NGENERATOR; i++) {
 			lend(c, i, wanted(c, i));
 			a->now[i] = a->place[i] = wanted(c, i);
@@ -327,13 +328,13 @@ void asking_step(struct cycle *c, const struct io_inputs *in)
 	if (!c->config.asking.limited) {
 		const bool stays = !ask_freely(c) && a->has;
 
+		a->begun = a->begun || state_duty[c->state].power;
 		a->has = is_confirmed(c, a->version);
 		if (!stays || !a->has)
 			bound_ignition(c);
 		give_back(c);
 		return;
 	}
-	begin_job(c);
 	hear_hand(c);
 	a->dark = c->out.power ? 0 : a->dark + 1;
 	/* Where these end, nothing may have changed. */

@@ -16,6 +16,9 @@
  * Without a job, values may be asked for to try the generator.  A job takes
  * them back, and so does the end of a lease.
  *
+ * Each job asks anew where its first sparks are to be, also for what the one
+ * before it asked for.  What the generator has lost by then is no trouble.
+ *
  * A generator on registers keeps the last value that it was asked for.  Where
  * nobody asks any more (a condition that does not give it, a set that was taken
  * back, the end of a trial), it is asked for the one that it told before.  If
@@ -61,7 +64,8 @@ struct asking {
 	double hand[INTERP_NGENERATOR];	/* what a person has set */
 	uint32_t stands;		/* ... or is to set, a bit of each: it
 					 * stands */
-	uint32_t path;			/* io_outputs.path of these */
+	bool begun;			/* the job has asked, where sparks are
+					 * to be: from then on trouble counts */
 	struct asking_trial trial, leased;	/* this one goes first ... */
 	uint64_t lease;			/* ... and ends in so many periods */
 	uint32_t lent;			/* a bit of each that was asked for
@@ -75,6 +79,10 @@ struct asking {
 
 /** asking_init() - nothing is asked yet. */
 void asking_init(struct asking *a);
+
+/** asking_begin() - another job: what was tried, and what a person has set, is
+ *  over. */
+void asking_begin(struct cycle *c);
 
 /** asking_restore() - the job that is loaded was begun before a crash, and the
  *  generator may have any of its values. */

@@ -146,19 +146,21 @@ bool conditions_begin(struct cycle *c)
 }
 
 /* Behind an action, where there are to be sparks, it is that of the cut ahead:
- * the action may be the program's begin, and have none. */
+ * the action may be the program's begin, and have none.  Whoever is held there
+ * keeps it. */
 static uint16_t cond_here(const struct cycle *c)
 {
 	const struct interp_program *p = &c->cursor.p;
 	const struct interp_seg *here = &c->cursor.seg;
 	struct interp_seg ahead;
 
-	if (here->kind < INTERP_BEGIN || here->kind == INTERP_END ||
-	    !state_duty[c->state].power)
+	if (here->kind < INTERP_BEGIN || here->kind == INTERP_END)
 		return here->cond;
 	ahead = p->segs[c->cursor.index + 1];
 	return interp_program_seg_ok(p, c->cursor.index + 1, &ahead) &&
-	       ahead.kind < INTERP_BEGIN ? ahead.cond : here->cond;
+	       ahead.kind < INTERP_BEGIN &&
+	       (ahead.cond == c->conditions.cond ||
+		state_duty[c->state].power) ? ahead.cond : here->cond;
 }
 
 /* Jumps, retracts, and whoever is held in one, are behind it. */
