@@ -375,14 +375,18 @@ static int check_by_hand(struct check *q)
 		return check_two_hands(q, fields);
 	interp_diag_say(q->diag, "generator.by_hand has \"%s\"; of peak_a "
 			"on_us off_us polarity ignition_v iso servo_v sense "
-			"pump, those that a person sets", odd);
+			"pump, those that a person sets, each once", odd);
 	return refuse(q, "by_hand");
 }
 
 static int check_fault_words(struct check *q)
 {
-	const char *wrong = config_fault_read(q->c->generator.fault_words);
+	struct config_way told;
+	const char *wrong;
 
+	config_way(q->c, PROCESS_FAULT, true, &told);
+	wrong = config_fault_read(q->c->generator.fault_words,
+				  (exp2(told.bits) - 1) * told.scale);
 	if (!wrong)
 		return 0;
 	interp_diag_say(q->diag, "generator.fault_words \"%.60s\" %s; none, "

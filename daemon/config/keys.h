@@ -213,11 +213,12 @@ void config_way_all(int field, bool by_hand, struct process_delivers *ret);
 #define CONFIG_WAY_WORD	40
 
 /** config_hand_read() - the fields of by_hand, a bit each; @odd gets the first
- *  word that is none, or "". */
+ *  word that is none, or is there twice, or "". */
 uint32_t config_hand_read(const char *text, char odd[CONFIG_WAY_WORD]);
 
-/** config_fault_read() - what is wrong with fault_words, or NULL. */
-const char *config_fault_read(const char *words);
+/** config_fault_read() - what is wrong with fault_words, or NULL.  @most: the
+ *  highest number that the generator tells. */
+const char *config_fault_read(const char *words, double most);
 
 /** config_plc_pulse() - can a PLC set this field, or tell it? */
 bool config_plc_pulse(int field);

@@ -504,7 +504,7 @@ uint32_t config_hand_read(const char *text, char odd[CONFIG_WAY_WORD])
 
 		while (i < PROCESS_SPARK && strcmp(w.word, process_name(i)))
 			i++;
-		if (i == PROCESS_SPARK && !*odd)
+		if (!*odd && (i == PROCESS_SPARK || fields >> i & 1))
 			memcpy(odd, w.word, sizeof(w.word));
 		fields |= i < PROCESS_SPARK ? 1u << i : 0;
 	}
@@ -532,7 +532,19 @@ static bool next_fault(const char **at, long *ret, int *ret_n,
 	return true;
 }
 
-const char *config_fault_read(const char *words)
+static bool has_fault(const char *words, long fault)
+{
+	const char *text;
+	long at;
+	int n;
+
+	while (next_fault(&words, &at, &n, &text))
+		if (at == fault)
+			return true;
+	return false;
+}
+
+const char *config_fault_read(const char *words, double most)
 {
 	const char *text;
 	long fault;
@@ -540,10 +552,16 @@ const char *config_fault_read(const char *words)
 
 	if (strcmp(words, "none") == 0)
 		return NULL;
-	while (next_fault(&words, &fault, &n, &text))
+	while (next_fault(&words, &fault, &n, &text)) {
 		if (n == 0 || n > CONFIG_FAULT_MAX - 8)
 			return "has a number without words, or with more than "
 			       "56 bytes of them";
+		if (has_fault(words, fault))
+			return "has a number twice";
+		if ((double)fault > most)
+			return "has a number that generator.told_fault does "
+			       "not tell";
+	}
 	return *words ? "has words without a number of 1 to 65535 before them" :
 			NULL;
 }

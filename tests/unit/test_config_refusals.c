@@ -313,12 +313,28 @@ static const struct refusal refusals[] = {
 	  "told_fault = input 40 codes 1 2\n", 7, 0,
 	  "has codes and is a sum or a number", "as register 10" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
-	  "fault_words = 1 no water, too warm\n", 7, 0,
+	  "told_fault = input 40\nfault_words = 1 no water, too warm\n", 8, 0,
 	  "generator.fault_words \"1 no water, too warm\" has words without a "
 	  "number", "1 no water, 2 too warm" },
 	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
 	  "fault_words = 1\n", 7, 0, "has a number without words",
 	  "1 no water, 2 too warm" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "told_fault = input 40\n"
+	  "fault_words = 1 no water, 2 too warm, 1 no oil\n", 8, 0,
+	  "generator.fault_words \"1 no water, 2 too warm, 1 no oil\" has a "
+	  "number twice", "1 no water, 2 too warm" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "told_fault = input 40 bits 8\nfault_words = 256 no water\n", 8, 0,
+	  "has a number that generator.told_fault does not tell",
+	  "1 no water, 2 too warm" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "told_fault = input 40\nfault_words = 65536 no water\n", 8, 0,
+	  "has words without a number of 1 to 65535", "1 no water" },
+	{ MODBUS "modbus = /dev/ttyS0\npeak_a = register 1\n"
+	  "fault_words = 1 no water\n", 7, 0,
+	  "has a number that generator.told_fault does not tell",
+	  "1 no water" },
 	{ MODBUS "modbus = /dev/ttyS0\n", 4, 0, "it reaches no field",
 	  "peak_a = register N" },
 	{ LINES_MACHINE "[generator]\ninterface = modbus\nmodbus = /dev/ttyS0\n"
@@ -450,6 +466,9 @@ static const struct refusal refusals[] = {
 	  "[generator]\ninterface = can\ncan_id = 416\n", 8, 0,
 	  "generator.can_id 416, which is between edmd and the PLC",
 	  "rest by 128 is not plc.node 32" },
+	{ "[machine]\nbackend = null\n[generator]\n"
+	  "by_hand = on_us off_us on_us\n", 4, 0,
+	  "generator.by_hand has \"on_us\"", "each once" },
 	{ "[machine]\nbackend = null\n[generator]\nby_hand = on_us amps\n", 4,
 	  0, "generator.by_hand has \"amps\"", "peak_a on_us off_us" },
 	{ "[machine]\nbackend = can402\n[can402]\nnode_X = 5\n[axis.X]\n"
