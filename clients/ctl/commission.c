@@ -374,8 +374,9 @@ int ctl_commission(struct ctl *c)
 	int err;
 
 	if (c->value && (strcmp(c->value, "again") != 0 || !c->third)) {
-		fprintf(stderr, "edmctl: commission %s %s: what? edmctl "
-			"commission FILE, or commission FILE again STEP\n",
+		fprintf(stderr, "edmctl: commission %s %s: not understood; "
+			"edmctl commission FILE, or commission FILE again "
+			"STEP\n",
 			c->arg, c->value);
 		return EX_USAGE;
 	}

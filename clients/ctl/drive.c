@@ -15,9 +15,9 @@
 #define WANTED		"edmctl drive list | watch | emcy | scope X [S] | " \
 			"get X OBJECT | set X OBJECT VALUE | store X"
 
-static int what(const char *which)
+static int not_understood(const char *which)
 {
-	fprintf(stderr, "edmctl: drive %s: what? " WANTED "\n", which);
+	fprintf(stderr, "edmctl: drive %s: not understood; " WANTED "\n", which);
 	return EX_USAGE;
 }
 
@@ -194,7 +194,7 @@ static int get(struct ctl *c)
 	int err;
 
 	if (!c->value || !c->more[0])
-		return what("get");
+		return not_understood("get");
 	join(c, 0, text, sizeof(text));
 	err = ctl_ask_json(c, &(struct talk_question) {
 		.verb = "drive-get", .text = text }, &o);
@@ -226,7 +226,7 @@ static int set(struct ctl *c)
 	while (c->value && c->more[n])
 		n++;
 	if (n < 2)
-		return what("set");
+		return not_understood("set");
 	join(c, 1, text, sizeof(text));
 	err = ctl_number(c, c->more[n - 1], "a whole number, also as 0x10",
 			 &value);
@@ -237,14 +237,15 @@ static int set(struct ctl *c)
 static int store(struct ctl *c)
 {
 	if (!c->value || c->more[0])
-		return what("store");
+		return not_understood("store");
 	return ctl_say(c, &(struct talk_question) {
 		.verb = "drive-store", .text = c->value });
 }
 
 static int scope(struct ctl *c)
 {
-	return c->value ? ctl_scope(c, c->value, c->more[0]) : what("scope");
+	return c->value ? ctl_scope(c, c->value, c->more[0]) :
+			  not_understood("scope");
 }
 
 int ctl_drive(struct ctl *c)
@@ -267,5 +268,5 @@ int ctl_drive(struct ctl *c)
 			c->timeout_s = OBJECT_S;
 		return acts[i].run(c);
 	}
-	return what(c->arg);
+	return not_understood(c->arg);
 }

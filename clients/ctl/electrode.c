@@ -9,11 +9,11 @@
 
 static int what(void)
 {
-	fprintf(stderr, "edmctl: electrode: what? electrode list, show N, add "
-		"N KEY=VALUE..., set N KEY=VALUE..., remove N, use N (use 0: "
-		"the holder is empty), measure N [new]; KEY is name, material, undersize, "
-		"length, wear, life (mm), minutes, sparked (min), state or "
-		"note\n");
+	fprintf(stderr, "edmctl: electrode: not understood; electrode list, "
+		"show N, add N KEY=VALUE..., set N KEY=VALUE..., remove N, use "
+		"N (use 0: the holder is empty), measure N [new]; KEY is name, "
+		"material, undersize, length, wear, life (mm), minutes, "
+		"sparked (min), state or note\n");
 	return EX_USAGE;
 }
 

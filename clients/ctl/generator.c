@@ -108,8 +108,9 @@ static int set(struct ctl *c)
 	int err;
 
 	if (!c->third) {
-		fprintf(stderr, "edmctl: generator set: what? edmctl generator "
-			"set FIELD VALUE, or default to take it back\n");
+		fprintf(stderr, "edmctl: generator set: not understood; edmctl "
+			"generator set FIELD VALUE, or default to take it "
+			"back\n");
 		return EX_USAGE;
 	}
 	err = strcmp(c->third, "default") == 0 ? 0 :

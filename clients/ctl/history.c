@@ -273,7 +273,7 @@ int history_csv(struct ctl *c)
 int ctl_history(struct ctl *c)
 {
 	if (c->picture && !c->arg) {
-		fprintf(stderr, "edmctl: history: a picture of which job? "
+		fprintf(stderr, "edmctl: history: --picture without a job; "
 			"edmctl history JOB --picture FILE.svg\n");
 		return EX_USAGE;
 	}

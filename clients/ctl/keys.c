@@ -99,8 +99,8 @@ int ctl_keys(struct ctl *c)
 		return add(c);
 	if (strcmp(c->arg, "remove") == 0 && named && !c->third)
 		return send(c, "keys-remove", c->value);
-	fprintf(stderr, "edmctl: keys: what? keys list, keys add NAME ROLE, or "
-		"keys remove NAME; a name is 1 to 31 of A-Z a-z 0-9 . _ -, a "
-		"role viewer, operator or service\n");
+	fprintf(stderr, "edmctl: keys: not understood; keys list, keys add "
+		"NAME ROLE, or keys remove NAME; a name is 1 to 31 of A-Z a-z "
+		"0-9 . _ -, a role viewer, operator or service\n");
 	return EX_USAGE;
 }

@@ -311,8 +311,8 @@ static int arguments_take(struct ctl *c, const struct verb *v, int argc,
 		return EX_USAGE;
 	}
 	if (argc < v->needs) {
-		fprintf(stderr, "edmctl: %s: what? edmctl %s %s\n", v->name,
-			v->name, v->args);
+		fprintf(stderr, "edmctl: %s: more is needed; edmctl %s %s\n",
+			v->name, v->name, v->args);
 		return EX_USAGE;
 	}
 	return 0;

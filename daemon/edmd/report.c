@@ -96,7 +96,7 @@ static const char *answer_text(int32_t code)
 	if (code == SHM_LATE)
 		return "it came too late";
 	if (code == SHM_CUT_SHORT)
-		return "the edmd before ended over it";
+		return "edmd ended before it answered";
 	return cycle_answer_text((enum cycle_answer)code);
 }
 

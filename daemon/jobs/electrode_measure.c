@@ -124,7 +124,7 @@ void electrode_measure(struct jobs *j, const struct verb *v,
 	(void)v;
 	if (!electrode_find_named(j, c, &e))
 		return;
-	why = *c->text && !is_new ? "measure what? N, or N new" :
+	why = *c->text && !is_new ? "measure: not understood; N, or N new" :
 	      why_not(j, &e, is_new);
 	if (why) {
 		verbs_answer(j, c, REFUSED, why);

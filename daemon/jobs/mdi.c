@@ -86,11 +86,12 @@ static const char *changed(struct jobs *j, const struct mdi_check *k)
 	if (why)
 		return why;
 	if (k->given_up)
-		return "a stop or a hold came while it was checked; again";
+		return "a stop or a hold came while it was checked; send it "
+		       "again";
 	if (memcmp(k->pos, j->link.snap.pos, sizeof(k->pos)) != 0)
-		return "the axes moved while it was checked; again";
+		return "the axes moved while it was checked; send it again";
 	return jobs_lcm_is_late(k->signed_us) ?
-	       "who asked for it did not wait for its check; again" : NULL;
+	       "who asked for it did not wait for its check; send it again" : NULL;
 }
 
 static int add(struct jobs *j, const struct mdi *m, uint32_t lines)
@@ -212,8 +213,8 @@ void mdi_run(struct jobs *j, const struct jobs_lcm_command *c,
 	if (j->mdi && j->mdi->asker.act == c->act)
 		return;
 	if (why || j->mdi) {
-		refuse(j, c, why ? why : "other lines are being checked; again "
-					 "when they are done");
+		refuse(j, c, why ? why : "other lines are being checked; send "
+					 "it again when they are done");
 		return;
 	}
 	k = check_new(j, c, m);
@@ -253,8 +254,8 @@ void mdi_take(struct jobs *j, const struct verb *v,
 
 	(void)v;
 	if (strlen(c->text) > MDI_TEXT_MAX) {
-		verbs_answer(j, c, EX_DATAERR, "too long a text; 4000 bytes at "
-			     "most; submit takes a longer one");
+		verbs_answer(j, c, EX_DATAERR, "the text is too long; 4000 "
+			     "bytes at most; submit takes a longer one");
 		return;
 	}
 	snprintf(id, sizeof(id), "mdi-%llx", (unsigned long long)c->act);

@@ -96,12 +96,12 @@ static const char *why_not(struct jobs *j, const struct touch *t)
 
 	if (!t->form && j->queue.job.n && !queue_is_leaving(&j->queue))
 		return "a job is loaded, which has the offsets as they were; "
-		       "when it has ended";
+		       "try again when it has ended";
 	if (moved && j->link.state != LINK_OK)
 		return "edmd is not there, so it is not known where the axes "
 		       "stand; systemctl start edmd";
 	if (moved && !t->form && j->link.snap.state != SHM_IDLE)
-		return "the machine is not idle; when it stands";
+		return "the machine is not idle; try again when it stands";
 	if (moved & (j->link.snap.unplaced | (j->config->require_home ?
 					      j->link.snap.unhomed : 0)))
 		return "the place of this axis is not certain; edmctl home, or "
@@ -178,18 +178,18 @@ const char *offset_touched(struct jobs *j)
 		return "";
 	if (read_back(j, &t) < 0)
 		snprintf(told, sizeof(told), "what it was to touch off is not "
-			 "known; once more");
+			 "known; touch off once more");
 	else if (!touch_is_found(&t, s))
 		snprintf(told, sizeof(told), "nothing was touched off: there "
 			 "was no contact");
 	else if (!touch_is_one_face(&t, s))
 		snprintf(told, sizeof(told), "the two contacts are askew by "
 			 "more than 45 degrees, so they are not of one face, "
-			 "and all is as it was; two places of the face that "
-			 "looks that way");
+			 "and nothing was changed; give two places of the face "
+			 "that looks that way");
 	else if (offset_put(j, &t, s, told))
 		snprintf(told, sizeof(told), "it was felt, but the store "
-			 "failed; once more");
+			 "failed; touch off once more");
 	jobs_note(j, &(struct jobs_note) {
 		.kind = t.work < 0 ? "electrode" : "offset",
 		.job = j->queue.job.id,

@@ -101,7 +101,7 @@ const char *queue_unready(const struct jobs *j)
 	if (j->link.state != LINK_OK)
 		return "edmd is not there";
 	if (queue_is_faulted(j))
-		return "a fault is latched: it wants a reset";
+		return "a fault is latched: reset it";
 	if (*j->interrupted)
 		return "a job was interrupted, and its work may still be "
 		       "there: resume it or remove it first";

@@ -34,7 +34,7 @@ static bool is_of(const struct shm_ended *e, const struct store_job *job)
 static const char *why_ended(const struct shm_ended *e, uint32_t measures)
 {
 	return e->outcome == SHM_OUTCOME_DONE ? measures ?
-	       "what it found was not written down; once more" : "" :
+	       "what it found was not written down; touch off once more" : "" :
 	       e->outcome == SHM_OUTCOME_FAULT ? "after a fault" :
 	       "by command";
 }

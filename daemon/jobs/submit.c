@@ -95,15 +95,17 @@ static void refuse_text(struct jobs *j, struct upload *up,
 static const char *what_next(const struct jobs *j, bool hold)
 {
 	if (j->link.state != LINK_OK)
-		return "edmd is not there: it waits, and wants a start";
+		return "edmd is not there: the job waits for a start";
 	if (j->link.snap.state == SHM_FAULT)
-		return "a fault is latched: it wants a reset, then a start";
+		return "a fault is latched: the job waits for a reset, then a "
+		       "start";
 	if (*j->interrupted)
 		return "a job was interrupted: resume it or remove it, then start";
 	if (*j->electrode.why)
 		return "a job before it waits for an electrode";
 	if (queue_unready(j))
-		return "an axis is not homed: it wants a home, then a start";
+		return "an axis is not homed: the job waits for a home, then a "
+		       "start";
 	if (j->unseen)
 		return interrupt_unseen(j);
 	if (j->queue.waiting)

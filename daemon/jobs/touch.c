@@ -228,7 +228,8 @@ static const char *against_skew(const struct touch *t)
 		return "a skew without a way along its face; I40 along X, J40 "
 		       "along Y";
 	if (t->here | t->at || t->clear || t->is_new || t->radius_mm > 0)
-		return "a skew gives a turn and no place; an edge for that";
+		return "a skew gives a turn and no place; an edge gives a "
+		       "place";
 	if (t->work < 0 && felt == 1u << INTERP_Z)
 		return "an electrode that tilts, which no axis turns; skew X+ "
 		       "J20 or skew Y+ I20";

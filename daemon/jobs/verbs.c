@@ -246,7 +246,7 @@ static void on_answer(void *arg, int code)
 	else if (code == SHM_NOT_UP)
 		verbs_answer(j, &c, REFUSED,
 			     "the drives are not up yet; edmd's journal tells "
-			     "which; again when they are");
+			     "which; try again when they are");
 	else if (code == SHM_BAD_ARGUMENT)
 		verbs_answer(j, &c, EX_DATAERR, a->verb->machine == SHM_DO_SET ?
 		       "edmd refused the value: with the others in force, "

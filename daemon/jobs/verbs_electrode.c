@@ -204,8 +204,8 @@ static bool is_busy(struct jobs *j, const struct jobs_lcm_command *c)
 	if (!j->queue.job.n || queue_is_leaving(&j->queue) ||
 	    electrode_held(j) != (uint32_t)c->arg)
 		return false;
-	verbs_answer(j, c, REFUSED, "a job is loaded that cuts with it; when "
-		     "the job has ended");
+	verbs_answer(j, c, REFUSED, "a job is loaded that cuts with it; try "
+		     "again when the job has ended");
 	return true;
 }
 
@@ -288,8 +288,8 @@ void electrode_use(struct jobs *j, const struct verb *v,
 	if (c->arg != 0 && !electrode_find_named(j, c, &e))
 		return;
 	if (j->queue.job.n && !queue_is_leaving(&j->queue)) {
-		verbs_answer(j, c, REFUSED, "a job is loaded; when it has "
-			     "ended, or a T word in the program");
+		verbs_answer(j, c, REFUSED, "a job is loaded; try again when "
+			     "it has ended, or write a T word in the program");
 		return;
 	}
 	err = store_set_number(j->store, "electrode", (int64_t)c->arg);

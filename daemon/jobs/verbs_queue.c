@@ -62,7 +62,7 @@ void verbs_remove(struct jobs *j, const struct verb *v,
 		answer_removed(j, c);
 	} else if (job.state == JOB_QUEUED && job.loaded) {
 		verbs_answer(j, c, REFUSED,
-			     "it is just being loaded; once more when it is "
+			     "it is just being loaded; try again when it is "
 			     "ready");
 	} else if (job.state != JOB_QUEUED) {
 		verbs_answer(j, c, REFUSED,

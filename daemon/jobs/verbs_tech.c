@@ -311,8 +311,8 @@ void verbs_tech_save(struct jobs *j, const struct verb *v,
 	if (!has_table(j, c))
 		return;
 	if (strlen(c->text) > TEXT_MAX)
-		verbs_answer(j, c, EX_DATAERR, "a table of more than 60000 "
-			     "bytes; into its file, by hand");
+		verbs_answer(j, c, EX_DATAERR, "the table has more than 60000 "
+			     "bytes; change its file by hand");
 	else
 		save(j, c, c->text, "a whole table");
 }

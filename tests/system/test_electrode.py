@@ -94,8 +94,8 @@ def test_what_cannot_be_is_refused_with_what_can(machine):
             (("set", "7", "state=worn"), "electrode list has them"),
             (("remove", "7"), "electrode list has them"),
             (("use", "7"), "electrode list has them"),
-            (("set", "3"), "electrode: what?"),
-            (("frob", "3"), "electrode: what?")):
+            (("set", "3"), "electrode: not understood"),
+            (("frob", "3"), "electrode: not understood")):
         r = m.ctl("electrode", *words)
         assert r.returncode != 0, words
         assert says in r.stderr, (words, r.stderr)
@@ -385,4 +385,4 @@ def test_what_cannot_be_measured_is_refused(machine):
     add(m, 3, "length=1")
     assert "measure = yes" in m.ctl("electrode", "measure", "3").stderr
     assert m.ctl("electrode", "measure", "4").returncode == 66
-    assert "what?" in m.ctl("electrode", "measure", "3", "old").stderr
+    assert "not understood" in m.ctl("electrode", "measure", "3", "old").stderr

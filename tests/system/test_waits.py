@@ -37,7 +37,7 @@ def test_accepted_while_edmd_stands_it_waits_for_a_start(machine):
         c.status_where(lambda s: s.daemon == "lost")
         a = c.submit(QUICK_JOB, "early")
         assert a.code == 0
-        assert "wants a start" in a.reason
+        assert "waits for a start" in a.reason
     finally:
         machine.edmd.send_signal(signal.SIGCONT)
     c.status_where(lambda s: s.daemon == "ok")

@@ -208,7 +208,7 @@ static const struct {
 	{ "C(0 0 0 / 0 0 0) X Y Z", "C without a direction", "a direction" },
 	{ "C(0 0 nan) X Y Z", "C at no place", "numbers" },
 	{ "Q X Y Z", "Q X Y Z at character 1", "from work to tool" },
-	{ "X Y Z(0 0 0 / 1 0 0)", "one plane", "span space" },
+	{ "X Y Z(0 0 0 / 1 0 0)", "one plane", "lie in one plane" },
 	{ "A B(0 0 0 / 1 0 0) X Y Z", "the same one", "two directions" },
 };
 

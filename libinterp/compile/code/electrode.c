@@ -130,7 +130,8 @@ int nc_check_eccentric(struct nc_reader *r, const double end_mm[INTERP_NAXES])
 		return 0;
 	return nc_refuse_at(r, r->line, "an electrode in the middle, or C "
 			    "turned by G0 before the cut", "a cut in which C "
-			    "turns electrode %u, whose middle is %.4f mm beside",
+			    "turns electrode %u, whose middle is %.4f mm "
+			    "beside the axis of C",
 			    r->electrode, hypot(r->electrode_by[INTERP_X],
 						r->electrode_by[INTERP_Y]));
 }

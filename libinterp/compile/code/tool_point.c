@@ -101,7 +101,7 @@ static int switch_on(struct nc_reader *r)
 	if (nc_is_eccentric(r))
 		return refuse_on(r, "an electrode in the middle, whose x and y "
 				 "are 0", "places of the tip of an electrode "
-				 "whose middle is beside");
+				 "whose middle is beside its holder's");
 	err = take_length(r);
 	if (err)
 		return err;

@@ -116,7 +116,7 @@ static int check_linear(struct interp_kinematics *k, struct interp_diag *diag)
 			      "%u linear axes in the chain", k->nlinear);
 	vec_cross(k->joint[k->linear[0]].dir, k->joint[k->linear[1]].dir, x);
 	if (fabs(vec_dot(x, k->joint[k->linear[2]].dir)) < 1e-6)
-		return refuse(diag, "three that span space",
+		return refuse(diag, "three that do not lie in one plane",
 			      "linear axes that lie in one plane");
 	return 0;
 }
