@@ -5,6 +5,8 @@
 #   make demo-plan  plan a way into a closed channel, prove it, cut along it
 #   make check      set up, build, all tests; ends with the runner's own lines
 #   make quick      of these, most of what goes wrong, in 90 s
+#   make quick FOLDER=libinterp/core  the unit tests of that folder alone
+#   make compile_commands.json  how each file is compiled, for editors and clangd
 #   make check-strict  CAN against strict drives, in the virtual machine; long
 #   make check-vm   all that runs on a PREEMPT_RT kernel in a virtual machine; the
 #                   shorter half of it is in check
@@ -20,6 +22,7 @@
 #   make shipped    each shipped machine file and its jobs, for 100 seeds
 #   make walkable   random programs of every dialect are walked, there and back
 #   make invariants what holds in every cycle, over ten million random ones
+#   make trace      when each period of build/edmd begins and ends, for perf
 #   make callgraph  draw which file of the cycle calls which
 #   make faults     the table of faults in docs/, from the one in the code
 #   make plc-files  EDS, DBC and the page of signals, from the one in the code
@@ -519,6 +522,16 @@ SLOW_UNITS = arcs cycle_random limits identify contouring taper \
 	     contour_random curve scurve
 SLOW_X	= $(SLOW_UNITS:%=$(B)/unit/test_%)
 
+# FOLDER: the unit tests that belong to it, without the slow ones.
+FOLDER	?=
+QUICK_X	= $(filter-out $(SLOW_X),$(UNITS_OF:%=$(B)/unit/%))
+ifneq ($(FOLDER),)
+quick: UNITS_OF = $(shell tests/units-of '$(FOLDER)')
+quick:
+	@$(if $(QUICK_X),,echo "no quick unit test belongs to $(FOLDER)"; exit 65)
+	@EDM_SEED=1 EDM_SHARE=4 $(MAKE) --no-print-directory -k -j$(SIDE) \
+		WERROR=1 $(QUICK_X:%=%.run)
+else
 quick:
 	@tests/stage quick build
 	@tests/setup check
@@ -530,6 +543,20 @@ quick:
 		-j$(SIDE) run-units UNIT_X="$(filter-out $(SLOW_X),$(UNIT_X))"
 	@tests/stage quick tests
 	@EDM_BUILD=$(B) $(NETNS) .venv/bin/pytest -q tests/system/test_erode.py
+endif
+
+# As root, while build/edmd runs: docs/debugging.md.
+.PHONY: trace
+TRACE_S	?= 5
+trace:
+	@tests/trace $(B)/edmd $(TRACE_S) $(B)/trace
+
+# What make would run is always looked at anew: it takes some seconds.
+.PHONY: compile_commands.json
+compile_commands.json:
+	@$(MAKE) --no-print-directory -Bn V=1 all units | \
+		tests/compile-commands > $@.new
+	@mv $@.new $@
 
 # What the virtual machine of tests/vm boots from, and edmd on libgpiod 2.x.
 PC2	= $(abspath build-vm/libgpiod2)

@@ -17,7 +17,8 @@
 
 static int not_understood(const char *which)
 {
-	fprintf(stderr, "edmctl: drive %s: not understood; " WANTED "\n", which);
+	fprintf(stderr, "edmctl: drive %s: not understood; " WANTED "\n",
+		which);
 	return EX_USAGE;
 }
 

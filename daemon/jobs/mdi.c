@@ -91,7 +91,8 @@ static const char *changed(struct jobs *j, const struct mdi_check *k)
 	if (memcmp(k->pos, j->link.snap.pos, sizeof(k->pos)) != 0)
 		return "the axes moved while it was checked; send it again";
 	return jobs_lcm_is_late(k->signed_us) ?
-	       "who asked for it did not wait for its check; send it again" : NULL;
+	       "who asked for it did not wait for its check; send it again" :
+	       NULL;
 }
 
 static int add(struct jobs *j, const struct mdi *m, uint32_t lines)

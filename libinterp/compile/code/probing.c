@@ -39,7 +39,8 @@ static int refuse_machine(struct nc_reader *r, enum nc_group group)
 
 	return nc_refuse(r, at, "places that count from the contact",
 			 "%s after a probing motion: where the program is in "
-			 "machine coordinates is not known", nc_quote_word(r, at).s);
+			 "machine coordinates is not known",
+			 nc_quote_word(r, at).s);
 }
 
 /* A G4, whose X is a time, or a G92, which gives the place its number. */
