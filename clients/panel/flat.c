@@ -5,6 +5,7 @@
 #include "flat.h"
 
 #include "interp/at.h"
+#include "interp/program.h"
 #include "interp/wire.h"
 #include "grow.h"
 

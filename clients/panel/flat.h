@@ -11,11 +11,11 @@
 #ifndef PANEL_FLAT_H
 #define PANEL_FLAT_H
 
-#include "interp/program.h"
-
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+struct interp_program;
 
 #define FLAT_POINTS_MAX	400000
 

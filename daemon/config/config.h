@@ -21,7 +21,6 @@
 #include "interp/diag.h"
 #include "interp/errormap.h"
 #include "interp/mcode_arg.h"
-#include "interp/program.h"
 #include "interp/setting.h"
 #include "interp/wire.h"
 

@@ -4,6 +4,8 @@
  */
 #include "keys_rows.h"
 
+#include "interp/program.h"
+
 static const char *strategy_word(int i)
 {
 	if (i < 0 || i >= INTERP_NSTRATEGIES)

@@ -11,8 +11,9 @@
 #include "store_work.h"
 #include "touch.h"
 
-#include "interp/program.h"
 #include "interp/turn.h"
+
+struct interp_origin;
 
 /** offset_name() - "G54" of 0. */
 const char *offset_name(int work);

@@ -3,7 +3,7 @@
 #ifndef JOBS_ORIGINS_H
 #define JOBS_ORIGINS_H
 
-#include "interp/program.h"
+struct interp_origin;
 
 /* All 0 at first. */
 struct offset {

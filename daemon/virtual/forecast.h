@@ -22,9 +22,9 @@
 
 #include "config.h"
 
-#include "interp/program.h"
-
 #include <stdatomic.h>
+
+struct interp_program;
 
 #define FORECAST_PARTS	4096		/* at most; neighbours of more are put
 					 * together */

@@ -4,6 +4,7 @@
 #define CODE_EMIT_H
 
 #include "interp/emit.h"
+#include "interp/program.h"
 
 #include <stddef.h>
 

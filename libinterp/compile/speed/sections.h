@@ -14,9 +14,10 @@
 #include "interp/at.h"
 #include "speed/along.h"
 #include "interp/limits.h"
-#include "interp/program.h"
 
 #include <stddef.h>
+
+struct interp_program;
 
 /* Lines shorter than so many corners stand for a curve. */
 #define SECTIONS_SHORT	100

@@ -8,7 +8,8 @@
 #define SPEED_WAYS_H
 
 #include "interp/limits.h"
-#include "interp/program.h"
+
+struct interp_program;
 
 /* Beside the path, a rounding of it counts so often. */
 #define WAYS_RATE_MOST	20

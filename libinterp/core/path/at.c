@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* at.c - the programmed point at a place: lines, arcs and curves */
 #include "interp/at.h"
+#include "interp/program.h"
 
 #include <math.h>
 

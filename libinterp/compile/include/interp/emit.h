@@ -10,7 +10,8 @@
 #define INTERP_EMIT_H
 
 #include "interp/diag.h"
-#include "interp/program.h"
+
+struct interp_program;
 
 /* Where text goes.  @put gets whole lines, each with its LF.  If it returns
  * anything but 0, the writing ends and that number is returned. */

@@ -15,7 +15,8 @@
 
 #include "interp/foot.h"
 #include "interp/nurbs.h"
-#include "interp/program.h"
+
+struct interp_program;
 
 /* The curve that was looked at last.  To open a span of a curve costs most of a
  * look, so it is kept.  It belongs to one program.  The caller fills it with
