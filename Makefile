@@ -237,7 +237,7 @@ $(B)/%.o: %.cc
 ifneq ($(OPT),$(FAST))
 # From text to program there are many short loops over the axes, and roots whose
 # errno nobody asks for.
-$(call obj,$(wildcard $(addprefix libinterp/compile/,code/again.c code/scan.c \
+$(call obj,$(wildcard $(addprefix libinterp/compile/,code/scan_again.c code/scan.c \
 	path/*.c speed/*.c)) libinterp/core/pulse/arc.c): OPT = -O3 -fno-math-errno
 # Nothing here may trap, so several ticks of an arc may be rounded at a time.
 $(call obj,libinterp/core/pulse/arc.c): OPT += -fno-trapping-math

@@ -3,7 +3,7 @@
 #include "standard.h"
 
 #include "plain.h"
-#include "written.h"
+#include "output.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -39,7 +39,7 @@ static void output_check(void)
 	int err;
 
 	interruption_check(ferror(stdout));
-	err = written_close(stdout);
+	err = output_close(stdout);
 	if (err == 0)
 		return;
 	interruption_check(err == -EINTR);

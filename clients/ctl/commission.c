@@ -5,7 +5,7 @@
  */
 #include "commission.h"
 
-#include "written.h"
+#include "output.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -167,7 +167,7 @@ static int keep(const struct tour *w)
 	f = fopen(fresh, "we");
 	if (f)
 		json_dumpf(w->steps, f, JSON_INDENT(1));
-	err = f ? written_close(f) : -errno;
+	err = f ? output_close(f) : -errno;
 	if (err == 0 && rename(fresh, path) < 0)
 		err = -errno;
 	if (err == 0)

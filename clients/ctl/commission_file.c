@@ -7,7 +7,7 @@
  */
 #include "commission.h"
 
-#include "written.h"
+#include "output.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -85,7 +85,7 @@ static int copy_all(FILE *from, struct copy *c)
 		fprintf(c->to, "%s[%s]\n", whole ? "" : "\n", c->section);
 	for (size_t i = 0; i < c->n; i++)
 		put(c, i);
-	return ferror(from) ? -EIO : written_close(c->to);
+	return ferror(from) ? -EIO : output_close(c->to);
 }
 
 static int make(const struct tour *w, const char *fresh, struct copy *c)

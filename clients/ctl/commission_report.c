@@ -4,7 +4,7 @@
  */
 #include "commission.h"
 
-#include "written.h"
+#include "output.h"
 
 #include <errno.h>
 #include <limits.h>
@@ -130,5 +130,5 @@ int tour_report(const struct tour *w)
 	if (!f)
 		return -errno;
 	put_page(f, w);
-	return written_close(f);
+	return output_close(f);
 }

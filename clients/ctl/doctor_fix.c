@@ -10,7 +10,7 @@
 #include "doctor_rt.h"
 
 #include "config.h"
-#include "written.h"
+#include "output.h"
 
 #include <errno.h>
 #include <glob.h>
@@ -56,7 +56,7 @@ static void put(struct mend *m, const char *path, bool is_kernel,
 	f = fopen(whole, is_kernel ? "r+e" : "we");
 	if (f)
 		fputs(text, f);
-	err = f ? written_close(f) : -errno;
+	err = f ? output_close(f) : -errno;
 	m->failed += err < 0;
 	printf("%-11s %s: %.*s\n            %s\n", err < 0 ? strerror(-err) :
 	       "written", path, (int)strcspn(text, "\n"), text, worth);
@@ -182,7 +182,7 @@ static void fix_affinity(struct mend *m)
 		FILE *f = fopen(g.gl_pathv[i], "r+e");
 
 		if (f && fputs(list, f) >= 0)
-			written_close(f);
+			output_close(f);
 		else if (f)
 			fclose(f);
 	}

@@ -10,7 +10,7 @@
 
 #include "config.h"
 #include "names.h"
-#include "written.h"
+#include "output.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -386,7 +386,7 @@ int ctl_new_machine(struct ctl *c)
 	f = fopen(c->arg, "wxe");
 	if (f)
 		put_all(f, &m);
-	err = f ? written_close(f) : -errno;
+	err = f ? output_close(f) : -errno;
 	if (err < 0) {
 		fprintf(stderr, "edmctl: %s: %s\n", c->arg, strerror(-err));
 		/* Half a file would be in the way of the next attempt. */

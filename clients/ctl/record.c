@@ -9,7 +9,7 @@
 #include "ctl.h"
 #include "plot.h"
 #include "shm.h"
-#include "written.h"
+#include "output.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -199,7 +199,7 @@ static void follow(const struct ctl *c, struct recording *r)
 
 static int close_csv(const struct ctl *c, struct recording *r)
 {
-	const int err = written_close(r->f);
+	const int err = output_close(r->f);
 
 	return err ? refuse(c, c->arg, strerror(-err), EX_IOERR) : 0;
 }

@@ -3,7 +3,7 @@
 #include "plot.h"
 #include "sim.h"
 #include "path/place.h"
-#include "written.h"
+#include "output.h"
 
 #include <errno.h>
 #include <math.h>
@@ -203,7 +203,7 @@ void record_cycle(struct sim_run *r)
 int record_shut(FILE *f, const char *path)
 {
 	const bool out = f == stdout;
-	const int err = f ? written_close(f) : 0;
+	const int err = f ? output_close(f) : 0;
 
 	if (err == 0)
 		return 0;

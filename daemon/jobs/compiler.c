@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* compiler.c - NC code to a program, in a thread of its own */
 #include "compiler.h"
-#include "both.h"
+#include "parallel.h"
 #include "compiling.h"
 #include "thread.h"
 
@@ -241,12 +241,12 @@ static void reading_compile(void *arg)
  * text.  Until it is known, nothing of that is given away. */
 static int check_and_compile(struct reading *r)
 {
-	if (r->c->request.bytes < LONG_BYTES || both_processors() < 2) {
+	if (r->c->request.bytes < LONG_BYTES || parallel_processors() < 2) {
 		reading_check(r);
 		if (r->is_whole)
 			reading_compile(r);
 	} else {
-		both(reading_compile, reading_check, r);
+		parallel_run(reading_compile, reading_check, r);
 	}
 	if (r->is_whole)
 		return r->err;

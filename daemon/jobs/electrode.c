@@ -2,7 +2,7 @@
 /* electrode.c - what a job asks for, and what it takes off its electrodes */
 #include "electrode.h"
 
-#include "again.h"
+#include "inside.h"
 #include "jobs.h"
 #include "jobs_log.h"
 
@@ -41,13 +41,13 @@ static void as_it_began(struct jobs *j, uint32_t n,
 			struct interp_electrodes *to)
 {
 	static struct store_worn w[INTERP_ELECTRODES_MAX];
-	static struct again a;
+	static struct inside a;
 	const struct checkpoint_job *last = &a.base.job;
 	const size_t k = store_worn_list(j->store, n, 0, w,
 					 INTERP_ELECTRODES_MAX);
 
 	/* Its sender named a place, and it has not begun yet. */
-	if (again_read(j, n, &a) < 0 || last->n == 0)
+	if (inside_read(j, n, &a) < 0 || last->n == 0)
 		return;
 	for (size_t i = k; i-- > 0;)
 		if (w[i].electrode)
@@ -212,9 +212,9 @@ const char *electrode_check(struct jobs *j, const struct compiler_result *r)
 /* Of a job that goes on, what was cut before. */
 static double cut_before_mm(struct jobs *j, uint32_t n)
 {
-	static struct again a;
+	static struct inside a;
 
-	if (again_read(j, n, &a) < 0)
+	if (inside_read(j, n, &a) < 0)
 		return 0;
 	return a.base.snap.far_mm - a.from_mm + a.way_mm;
 }

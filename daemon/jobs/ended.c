@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* ended.c - a job is over: what is written of it, and told */
-#include "again.h"
+#include "inside.h"
 #include "jobs.h"
 #include "offset.h"
 
@@ -24,11 +24,11 @@ void queue_ended_event(struct queue *q, const struct shm_event *e)
 
 void queue_totals(struct jobs *j, struct shm_snapshot *ret)
 {
-	static struct again a;
+	static struct inside a;
 
 	*ret = j->queue.snap;
-	if (again_read(j, j->queue.job.n, &a) == 0)
-		again_whole(&a, ret);
+	if (inside_read(j, j->queue.job.n, &a) == 0)
+		inside_whole(&a, ret);
 }
 
 /* With its totals, as far as they are known. */

@@ -2,7 +2,7 @@
 /* interrupt.c - a job that a power cut or the death of edmd ended early */
 #include "interrupt.h"
 
-#include "again.h"
+#include "inside.h"
 #include "jobs.h"
 #include "jobs_log.h"
 
@@ -17,10 +17,10 @@
 static bool is_of_run(struct jobs *j, const struct store_job *job)
 {
 	const struct checkpoint *c = &j->last;
-	static struct again a;
+	static struct inside a;
 	char hex[65];
 
-	again_read(j, job->n, &a);
+	inside_read(j, job->n, &a);
 
 	sodium_bin2hex(hex, sizeof(hex), c->base.job.sha256,
 		       sizeof(c->base.job.sha256));
@@ -361,13 +361,13 @@ void interrupt_attach(struct jobs *j)
 
 static void keep(struct jobs *j, const struct checkpoint *c)
 {
-	static struct again a;
+	static struct inside a;
 	const struct shm_snapshot *s = &a.base.snap;
 	char reason[320], when[32];
 
 	note_unseen(j, unhomeable(j));
-	again_interrupted(j, j->queue.job.n, &c->base, &a);
-	again_write(j, j->queue.job.n, &a);
+	inside_interrupted(j, j->queue.job.n, &c->base, &a);
+	inside_write(j, j->queue.job.n, &a);
 	take_sums(&j->queue, &a.base);
 	say_when(when, sizeof(when), c->utime);
 	snprintf(reason, sizeof(reason), "interrupted in %s, line %u, at %.3f "
@@ -382,10 +382,10 @@ static void keep(struct jobs *j, const struct checkpoint *c)
 /* It went down before a checkpoint of this run was on the disk. */
 static void keep_before(struct jobs *j)
 {
-	static struct again a;
+	static struct inside a;
 	char reason[320];
 
-	if (again_read(j, j->queue.job.n, &a) < 0 || again_is_named(&a)) {
+	if (inside_read(j, j->queue.job.n, &a) < 0 || inside_is_named(&a)) {
 		queue_end(j, JOB_STOPPED, "the host or edmd went down in it, "
 			  "and no checkpoint of it is left: where it was is "
 			  "not known");

@@ -2,7 +2,7 @@
 /* load.c - takes a job from the store and loads it into edmd */
 #include "jobs.h"
 
-#include "again.h"
+#include "inside.h"
 #include "compiler.h"
 #include "faults.h"
 #include "jobs_log.h"
@@ -98,14 +98,14 @@ int load_send(struct jobs *j, uint32_t verb, uint32_t n, int64_t now_us)
 static void load_refuse(struct jobs *j, struct store_job job,
 			const char *reason)
 {
-	static struct again a;
+	static struct inside a;
 
 	j->queue.job = job;
 	j->queue.snap = (struct shm_snapshot) { .program = 0 };
 	j->queue.depth_mm = 0;
 	/* What was cut of an interrupted job is not thrown away. */
-	if (again_read(j, job.n, &a) == 0 && !again_is_named(&a))
-		again_refuse(j, &job, reason);
+	if (inside_read(j, job.n, &a) == 0 && !inside_is_named(&a))
+		inside_refuse(j, &job, reason);
 	else
 		queue_end(j, JOB_FAULT, reason);
 	queue_drop(j, false);
@@ -158,11 +158,11 @@ static bool refused_electrode(struct jobs *j, struct interp_wear *wear)
 {
 	const struct store_job job = j->queue.job;
 	const char *why = electrode_load(j, wear);
-	static struct again a;
+	static struct inside a;
 
 	if (!why)
 		return false;
-	if (again_read(j, job.n, &a) == 0 && !again_is_named(&a)) {
+	if (inside_read(j, job.n, &a) == 0 && !inside_is_named(&a)) {
 		load_refuse(j, job, why);
 		return true;
 	}
@@ -225,7 +225,7 @@ static void on_compiled(void *arg, struct compiler_result *r)
 		return;
 	if (r->err == 0) {
 		q->job = found;
-		why = again_loaded(j, r);
+		why = inside_loaded(j, r);
 		if (why) {
 			load_refuse(j, found, why);
 		} else {
@@ -262,7 +262,7 @@ int load_request(struct jobs *j, const struct store_job *job,
 	/* A short one is in the database. */
 	err = store_text_file(j->store, job->n, ret->text_file);
 	if (err == 0 || err == -ENOENT)
-		err = again_request(j, job, ret);
+		err = inside_request(j, job, ret);
 	if (err < 0)
 		return err;
 	electrode_request(j, job, 0, ret);
@@ -290,7 +290,7 @@ static int compile(struct jobs *j)
 {
 	struct queue *q = &j->queue;
 	struct compiler_request request;
-	int err = again_check(j, &q->next);
+	int err = inside_check(j, &q->next);
 
 	if (err == 0)
 		err = load_request(j, &q->next, &request);

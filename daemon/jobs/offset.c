@@ -2,7 +2,7 @@
 /* offset.c - work offsets: touched off, kept, given to the compiler */
 #include "offset.h"
 
-#include "again.h"
+#include "inside.h"
 #include "electrode.h"
 #include "mdi.h"
 #include "offset_put.h"
@@ -22,9 +22,9 @@
 /* A job that goes on after an interruption has those of its beginning. */
 static bool goes_on(struct jobs *j, const struct store_job *job)
 {
-	static struct again a;
+	static struct inside a;
 
-	return again_read(j, job->n, &a) == 0 && !again_is_named(&a);
+	return inside_read(j, job->n, &a) == 0 && !inside_is_named(&a);
 }
 
 int offset_request(struct jobs *j, const struct store_job *job,

@@ -3,6 +3,8 @@
 #ifndef JOBS_ORIGINS_H
 #define JOBS_ORIGINS_H
 
+#include <stdint.h>
+
 struct interp_origin;
 
 /* All 0 at first. */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* queue.c - follows the job that is in the machine */
-#include "again.h"
+#include "inside.h"
 #include "faults.h"
 #include "hunting.h"
 #include "process.h"
@@ -175,7 +175,7 @@ static void read_start(struct jobs *j)
 
 int queue_init(struct jobs *j)
 {
-	static struct again a;
+	static struct inside a;
 	struct queue *q = &j->queue;
 	int err = store_loaded(j->store, &q->job);
 
@@ -183,7 +183,7 @@ int queue_init(struct jobs *j)
 		return err;
 	q->waiting = store_number(j->store, "waiting", 0) != 0;
 	queue_recount(j);
-	if (q->job.n && again_read(j, q->job.n, &a) == 0)
+	if (q->job.n && inside_read(j, q->job.n, &a) == 0)
 		q->run = a.run;
 	if (!q->job.n)
 		return 0;

@@ -8,7 +8,7 @@
  */
 #include "jobs.h"
 
-#include "again.h"
+#include "inside.h"
 #include "compiler.h"
 #include "entry.h"
 #include "interrupt.h"
@@ -162,7 +162,7 @@ static void accept_text(struct jobs *j, struct upload *up,
 		.text = up->text, .bytes = up->bytes, .lines = lines,
 		.tech_sha256 = r->tech_sha256,
 		.hold = up->hold, .now_us = jobs_utime(),
-		.begin_at = again_named(up->from_line, up->from_mm),
+		.begin_at = inside_named(up->from_line, up->from_mm),
 		.electrode = up->electrode, .told = told,
 		.setting = up->setting,
 	};
@@ -278,7 +278,7 @@ static void check_begin(struct jobs *j, struct upload *up)
 		store_text_path(j->store, hex, request.text_file);
 	start_place(j, request.start_mm);
 	if (up->from_line > 0 || up->from_mm > 0)
-		again_begin_at(j, up->from_line, up->from_mm, &request);
+		inside_begin_at(j, up->from_line, up->from_mm, &request);
 	electrode_request(j, NULL, up->electrode, &request);
 	if (offset_request(j, NULL, &request) < 0)
 		err = -EIO;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* tally.c - what the job in the machine comes to */
 #include "tally.h"
-#include "again.h"
+#include "inside.h"
 #include "faults.h"
 #include "jobs.h"
 #include "store_tally.h"
@@ -176,19 +176,19 @@ static void begin(struct jobs *j, uint32_t n)
 	if (n == 0)
 		return;
 	tally_read(j, t);
-	t->goes_on = again_read(j, n, &t->again) == 0;
+	t->goes_on = inside_read(j, n, &t->again) == 0;
 }
 
 static void make_whole(const struct tally *t, struct shm_snapshot *s)
 {
 	if (t->goes_on)
-		again_whole(&t->again, s);
+		inside_whole(&t->again, s);
 }
 
 /* Places of an event are those of the program that was loaded. */
 static double whole_place_mm(const struct tally *t, double place_mm)
 {
-	const struct again *a = &t->again;
+	const struct inside *a = &t->again;
 
 	if (!t->goes_on)
 		return place_mm;

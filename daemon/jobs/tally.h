@@ -23,7 +23,7 @@
 #ifndef JOBS_TALLY_H
 #define JOBS_TALLY_H
 
-#include "again_kept.h"
+#include "inside_kept.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -59,7 +59,7 @@ struct tally {
 	uint32_t n;			/* of the job; 0: none */
 	bool goes_on;			/* it did not begin at the start of its
 					 * text, but as ... */
-	struct again again;		/* ... this says */
+	struct inside again;		/* ... this says */
 	struct tally_sums seen;		/* the sum of the rows */
 	struct tally_row row[TALLY_CONDITIONS];
 	uint32_t nrows;

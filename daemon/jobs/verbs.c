@@ -6,7 +6,7 @@
  * The other verbs are answered at once.
  */
 #include "act.h"
-#include "again.h"
+#include "inside.h"
 #include "electrode.h"
 #include "faults.h"
 #include "interrupt.h"
@@ -709,7 +709,7 @@ static void verb_resume(struct jobs *j, const struct verb *v,
 		verbs_answer(j, c, EX_NOINPUT,
 			     "no such job; edmctl queue lists them");
 	} else {
-		again_resume(j, c, &job);
+		inside_resume(j, c, &job);
 	}
 }
 

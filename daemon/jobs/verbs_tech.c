@@ -12,7 +12,7 @@
 #include "jobs.h"
 #include "store_tech.h"
 #include "store_text.h"
-#include "written.h"
+#include "output.h"
 
 #include "interp/tech_table.h"
 
@@ -54,7 +54,7 @@ static int write_all(const char *path, const char *text, const char *like)
 	fputs(text, f);
 	fflush(f);
 	fsync(fileno(f));
-	err = written_close(f);
+	err = output_close(f);
 	if (err < 0)
 		unlink(path);
 	return err;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * test_nc_again.c - a line with the same words as the line before it is read in
- * a way of its own (again.c); it must be the same as if it were any line
+ * a way of its own (scan_again.c); it must be the same as if it were any line
  *
  * A comment behind the words changes nothing, but such lines are never read in
  * that way.  So each text is read with and without comments.  (It makes a line

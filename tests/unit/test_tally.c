@@ -15,14 +15,14 @@ static double ground_mm;		/* where a resumed job goes on */
 static int used_writes, trail_writes, faults;
 static struct store_fault fault;
 
-int again_read(struct jobs *jobs, uint32_t n, struct again *ret)
+int inside_read(struct jobs *jobs, uint32_t n, struct inside *ret)
 {
 	(void)jobs, (void)n;
-	*ret = (struct again) { .from_mm = ground_mm };
+	*ret = (struct inside) { .from_mm = ground_mm };
 	return resumed ? 0 : -1;
 }
 
-void again_whole(const struct again *a, struct shm_snapshot *s)
+void inside_whole(const struct inside *a, struct shm_snapshot *s)
 {
 	s->place_mm += a->from_mm;
 }

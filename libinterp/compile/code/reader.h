@@ -3,7 +3,7 @@
  * reader.h - the state of the NC reader, and who does what
  *
  *	scan.c		one line of text into a block of words
- *	again.c		the same for a line like the one before
+ *	scan_again.c	the same for a line like the one before
  *	modal.c		carry a block out, group by group
  *	mcode.c		M codes of the machine
  *	electrode.c	T words: which electrode cuts
@@ -89,7 +89,7 @@ struct nc_block {
 	bool colon;			/* the top has its own words */
 };
 
-/* A line up to its numbers: again.c. */
+/* A line up to its numbers: scan_again.c. */
 #define NC_PATTERN_WORDS	8
 
 struct nc_pattern_word {

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* both.c - two things at the same time */
-#include "both.h"
+/* parallel.c - two things at the same time */
+#include "parallel.h"
 
 #include "thread.h"
 
 #include <sched.h>
 
-uint32_t both_processors(void)
+uint32_t parallel_processors(void)
 {
 	cpu_set_t set;
 
@@ -27,12 +27,12 @@ static void *run(void *arg)
 	return NULL;
 }
 
-void both(void (*one)(void *), void (*other)(void *), void *arg)
+void parallel_run(void (*one)(void *), void (*other)(void *), void *arg)
 {
 	struct call c = { other, arg };
 	pthread_t thread;
 	const int err = thread_start(&thread, &(struct thread) {
-		.name = "edm-both", .run = run, .arg = &c,
+		.name = "edm-parallel", .run = run, .arg = &c,
 	});
 
 	one(arg);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * again.c - a line with the same words as the line before it
+ * scan_again.c - a line with the same words as the line before it
  *
  * Most lines of a long text differ from the line before them only in their
  * numbers.  What a line is follows from its words: which groups it has, what

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* again_kept.h - what is kept of a job that does not begin at its beginning */
-#ifndef JOBS_AGAIN_KEPT_H
-#define JOBS_AGAIN_KEPT_H
+/* inside_kept.h - what is kept of a job that does not begin at its beginning */
+#ifndef JOBS_INSIDE_KEPT_H
+#define JOBS_INSIDE_KEPT_H
 
 #include "checkpoint.h"
 
 /* Where a job begins or goes on; kept in the store. */
-struct again {
+struct inside {
 	struct checkpoint_base base;	/* places in mm of the whole program */
 	double from_mm, way_mm;		/* as in interp/build_from.h; the
 					 * program of this job; 0, 0: not
@@ -19,8 +19,8 @@ struct again {
 	uint32_t run;			/* as in struct checkpoint_job */
 };
 
-/** again_whole() - @s of a job that goes on as @a says, as if it had never been
- *  interrupted: place, length and sums. */
-void again_whole(const struct again *a, struct shm_snapshot *s);
+/** inside_whole() - @s of a job that goes on as @a says, as if it had never
+ *  been interrupted: place, length and sums. */
+void inside_whole(const struct inside *a, struct shm_snapshot *s);
 
-#endif /* JOBS_AGAIN_KEPT_H */
+#endif /* JOBS_INSIDE_KEPT_H */

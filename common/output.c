@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* written.c - did all of a file reach the disk, and if not, why? */
-#include "written.h"
+/* output.c - did all of a file reach the disk, and if not, why? */
+#include "output.h"
 
 #include <errno.h>
 #include <unistd.h>
@@ -18,7 +18,7 @@ static int why_failed(FILE *f)
 	return errno ? -errno : -ENOSPC;
 }
 
-int written_close(FILE *f)
+int output_close(FILE *f)
 {
 	const int failed = ferror(f) ? why_failed(f) : 0;
 	const int last = fflush(f) != 0 ? -errno : 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* again.c - an interrupted job goes on */
-#include "again.h"
+/* inside.c - an interrupted job goes on */
+#include "inside.h"
 #include "entry.h"
 #include "files.h"
 #include "interrupt.h"
@@ -56,7 +56,7 @@ static bool is_whole(const char *at)
 	return memcmp(at, hash, HASH_HEX) == 0;
 }
 
-static int take(const char *body, struct again *ret)
+static int take(const char *body, struct inside *ret)
 {
 	const char *rest = NULL;
 	size_t bytes = 0;
@@ -66,10 +66,11 @@ static int take(const char *body, struct again *ret)
 	    sscanf(rest, ";%lf;%lf;%u;%u;%u;%lf", &ret->from_mm, &ret->way_mm,
 		   &ret->instance, &ret->run, &ret->line, &ret->place_mm) != 6)
 		return -EBADMSG;
-	return bytes == sizeof(ret->base) || again_is_named(ret) ? 0 : -EBADMSG;
+	return bytes == sizeof(ret->base) || inside_is_named(ret) ?
+	       0 : -EBADMSG;
 }
 
-int again_read(struct jobs *j, uint32_t n, struct again *ret)
+int inside_read(struct jobs *j, uint32_t n, struct inside *ret)
 {
 	char *at = store_resume_at(j->store, n);
 	int err = -EBADMSG;
@@ -85,12 +86,12 @@ int again_read(struct jobs *j, uint32_t n, struct again *ret)
 	return err;
 }
 
-bool again_is_named(const struct again *a)
+bool inside_is_named(const struct inside *a)
 {
 	return a->line > 0 || a->place_mm > 0;
 }
 
-const char *again_named(uint32_t line, double place_mm)
+const char *inside_named(uint32_t line, double place_mm)
 {
 	static char at[HASH_HEX + 80];
 
@@ -102,7 +103,7 @@ const char *again_named(uint32_t line, double place_mm)
 	return at;
 }
 
-int again_write(struct jobs *j, uint32_t n, const struct again *a)
+int inside_write(struct jobs *j, uint32_t n, const struct inside *a)
 {
 	const size_t hex = 2 * sizeof(a->base) + 1, room = hex + 140;
 	char *at = malloc(HASH_HEX + 1 + room), *body = at + HASH_HEX + 1;
@@ -120,7 +121,7 @@ int again_write(struct jobs *j, uint32_t n, const struct again *a)
 	return err;
 }
 
-void again_whole(const struct again *a, struct shm_snapshot *s)
+void inside_whole(const struct inside *a, struct shm_snapshot *s)
 {
 	const struct shm_snapshot *before = &a->base.snap;
 
@@ -153,20 +154,20 @@ static void keep_sets(const struct shm_sets *before, struct shm_sets *s)
 	}
 }
 
-void again_interrupted(struct jobs *j, uint32_t n,
-		       const struct checkpoint_base *last, struct again *ret)
+void inside_interrupted(struct jobs *j, uint32_t n,
+			const struct checkpoint_base *last, struct inside *ret)
 {
-	static struct again before;
+	static struct inside before;
 
-	*ret = (struct again) { .base = *last };
-	if (again_read(j, n, &before) < 0)
+	*ret = (struct inside) { .base = *last };
+	if (inside_read(j, n, &before) < 0)
 		return;
 	/* It would have been told again at the end of the positioning. */
 	if (!last->snap.mcode && last->snap.far_mm <= before.way_mm)
 		ret->base.snap.mcode = before.base.snap.mcode;
-	again_whole(&before, &ret->base.snap);
+	inside_whole(&before, &ret->base.snap);
 	keep_sets(&before.base.sets, &ret->base.sets);
-	if (!again_is_named(&before))
+	if (!inside_is_named(&before))
 		memcpy(ret->base.job.start, before.base.job.start,
 		       sizeof(ret->base.job.start));
 }
@@ -224,7 +225,7 @@ static void say_axes(struct jobs *j, const char *vouched, char reason[320])
 		snprintf(reason, 320, "%s", told);
 }
 
-static bool are_same_files(const struct jobs *j, const struct again *a)
+static bool are_same_files(const struct jobs *j, const struct inside *a)
 {
 	uint8_t now[32];
 
@@ -233,7 +234,7 @@ static bool are_same_files(const struct jobs *j, const struct again *a)
 }
 
 /* It may have come here from another store. */
-static bool is_of_job(const struct again *a, const struct store_job *job)
+static bool is_of_job(const struct inside *a, const struct store_job *job)
 {
 	char hex[65];
 
@@ -243,7 +244,7 @@ static bool is_of_job(const struct again *a, const struct store_job *job)
 }
 
 static void why_not(struct jobs *j, const struct jobs_lcm_command *c,
-		    const struct store_job *job, const struct again *a,
+		    const struct store_job *job, const struct inside *a,
 		    char reason[320])
 {
 	const char *now = NULL;
@@ -271,14 +272,14 @@ static void why_not(struct jobs *j, const struct jobs_lcm_command *c,
 		say_axes(j, c->text, reason);
 }
 
-void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
-		  const struct store_job *job)
+void inside_resume(struct jobs *j, const struct jobs_lcm_command *c,
+		   const struct store_job *job)
 {
 	char reason[320];
-	struct again a;
+	struct inside a;
 	int err;
 
-	again_read(j, job->n, &a);
+	inside_read(j, job->n, &a);
 	why_not(j, c, job, &a, reason);
 	if (reason[0]) {
 		verbs_answer(j, c, REFUSED, reason);
@@ -288,7 +289,7 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
 	a.from_mm = a.way_mm = 0;
 	/* Places of the checkpoint before are not those of the new program. */
 	a.run = randombytes_random() | 1;
-	err = again_write(j, job->n, &a);
+	err = inside_write(j, job->n, &a);
 	if (err == 0)
 		err = store_again(j->store, job->n);
 	if (err != 0) {
@@ -305,7 +306,7 @@ void again_resume(struct jobs *j, const struct jobs_lcm_command *c,
 
 /* -- Loading --------------------------------------------------------------- */
 
-void again_refuse(struct jobs *j, const struct store_job *job, const char *why)
+void inside_refuse(struct jobs *j, const struct store_job *job, const char *why)
 {
 	store_set_state(j->store, job->n, JOB_INTERRUPTED);
 	interrupt_init(j);
@@ -337,32 +338,32 @@ static struct interp_depth depth_by(const struct shm_snapshot *s)
 	return d;
 }
 
-int again_check(struct jobs *j, const struct store_job *job)
+int inside_check(struct jobs *j, const struct store_job *job)
 {
-	static struct again a;
-	const int err = again_read(j, job->n, &a);
+	static struct inside a;
+	const int err = inside_read(j, job->n, &a);
 
 	if (err == -ENOENT)
 		return 0;
-	if (err == 0 && (again_is_named(&a) || a.instance == j->link.instance))
+	if (err == 0 && (inside_is_named(&a) || a.instance == j->link.instance))
 		return 0;
-	again_refuse(j, job, err < 0 ? UNREADABLE :
-		     "edmd was started anew since it was resumed, so its axes "
-		     "have to be looked at again");
+	inside_refuse(j, job, err < 0 ? UNREADABLE :
+		      "edmd was started anew since it was resumed, so its axes "
+		      "have to be looked at again");
 	return -ESTALE;
 }
 
-int again_request(struct jobs *j, const struct store_job *job,
-		  struct compiler_request *ret)
+int inside_request(struct jobs *j, const struct store_job *job,
+		   struct compiler_request *ret)
 {
 	const struct shm_snapshot *s = &j->link.snap;
-	static struct again a;
-	const int err = again_read(j, job->n, &a);
+	static struct inside a;
+	const int err = inside_read(j, job->n, &a);
 
 	if (err < 0)
 		return err == -ENOENT ? 0 : err;
-	again_begin_at(j, a.line, a.place_mm, ret);
-	if (again_is_named(&a))
+	inside_begin_at(j, a.line, a.place_mm, ret);
+	if (inside_is_named(&a))
 		return 0;
 	ret->sets = a.base.sets;
 	ret->from.far_mm = a.base.snap.far_mm;
@@ -375,8 +376,8 @@ int again_request(struct jobs *j, const struct store_job *job,
 	return 0;
 }
 
-void again_begin_at(const struct jobs *j, uint32_t line, double place_mm,
-		    struct compiler_request *ret)
+void inside_begin_at(const struct jobs *j, uint32_t line, double place_mm,
+		     struct compiler_request *ret)
 {
 	ret->goes_on = true;
 	ret->from.line = line;
@@ -385,7 +386,7 @@ void again_begin_at(const struct jobs *j, uint32_t line, double place_mm,
 	memcpy(ret->from.now_mm, ret->start_mm, sizeof(ret->from.now_mm));
 }
 
-static bool is_same_table(const struct again *a, const char *sha256)
+static bool is_same_table(const struct inside *a, const char *sha256)
 {
 	uint8_t tech[sizeof(a->base.job.tech)] = { 0 };
 
@@ -394,18 +395,18 @@ static bool is_same_table(const struct again *a, const char *sha256)
 	return memcmp(tech, a->base.job.tech, sizeof(tech)) == 0;
 }
 
-const char *again_loaded(struct jobs *j, const struct compiler_result *r)
+const char *inside_loaded(struct jobs *j, const struct compiler_result *r)
 {
 	const struct store_job *job = &j->queue.job;
 	char way[480];
-	static struct again a;
+	static struct inside a;
 
 	j->queue.run = 0;
 	files_hash(j, j->config_hash);
-	if (again_read(j, job->n, &a) < 0)
+	if (inside_read(j, job->n, &a) < 0)
 		return NULL;
 	j->queue.run = a.run;
-	if (again_is_named(&a)) {
+	if (inside_is_named(&a)) {
 		a.base.snap.far_mm = r->entry.far_mm;
 		a.base.snap.length_mm = r->entry.length_mm;
 	} else if (!is_same_table(&a, r->tech_sha256)) {
@@ -414,7 +415,7 @@ const char *again_loaded(struct jobs *j, const struct compiler_result *r)
 	}
 	a.from_mm = r->entry.from_mm;
 	a.way_mm = r->entry.way_mm;
-	if (again_write(j, job->n, &a) != 0)
+	if (inside_write(j, job->n, &a) != 0)
 		return "where it goes on cannot be stored";
 	config_entry_words(j->config, &r->entry, way, sizeof(way));
 	jobs_note(j, &(struct jobs_note) {
