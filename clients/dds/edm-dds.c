@@ -126,6 +126,7 @@ static const struct cmdline table = {
 static int bridge_open(struct bridge *b, const struct options *o)
 {
 	char name[sizeof(TOPIC_DDS) + SHM_NAME_MAX];
+	dds_entity_t part;
 	int err;
 
 	watch_init(&b->watch, o->machine);
@@ -141,14 +142,15 @@ static int bridge_open(struct bridge *b, const struct options *o)
 	b->others = dds_create_reader(b->participant,
 				      DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, NULL,
 				      NULL);
-	b->writer = topic_writer_create(b->participant, TOPIC_STATE);
+	part = topic_part_create(b->participant, true, o->machine);
+	b->writer = topic_writer_create(part, TOPIC_STATE);
 	if (b->others < 0 || b->writer < 0)
 		return b->others < 0 ? b->others : b->writer;
 	if (o->once)
 		return 0;
 	err = relay_open(&b->relay, b->participant, o->machine, b->epoll);
-	return err < 0 ? err : reports_open(&b->reports, b->participant,
-					    o->machine, o->key);
+	return err < 0 ? err : reports_open(&b->reports, part, o->machine,
+					    o->key);
 }
 
 /* Deleting the writer disposes of its instance, so readers see that it

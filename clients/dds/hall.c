@@ -14,7 +14,9 @@ int hall_open(struct hall *h, dds_entity_t participant)
 	h->sample = calloc(TAKE, sizeof(*h->sample));
 	if (!h->row || !h->sample)
 		return DDS_RETCODE_OUT_OF_RESOURCES;
-	h->reader = topic_reader_create(participant, TOPIC_STATE);
+	h->reader = topic_reader_create(topic_part_create(participant, false,
+							  TOPIC_ALL_PARTS),
+					TOPIC_STATE);
 	return h->reader < 0 ? h->reader : 0;
 }
 
@@ -29,11 +31,15 @@ static int by_name(const void *key, const void *row)
 	return strcmp(key, ((const struct hall_machine *)row)->m.machine);
 }
 
+static struct hall_machine *find(const struct hall *h, const char *name)
+{
+	return bsearch(name, h->row, h->n, sizeof(*h->row), by_name);
+}
+
 /* Return: NULL if there is no room. */
 static struct hall_machine *row_of(struct hall *h, const char *name)
 {
-	struct hall_machine *r = bsearch(name, h->row, h->n, sizeof(*h->row),
-					 by_name);
+	struct hall_machine *r = find(h, name);
 	size_t at = 0;
 
 	if (r || h->n == HALL_MAX)
@@ -62,8 +68,12 @@ static void turn(struct hall_machine *r, dds_instance_handle_t writer)
 static void heard(struct hall *h, const edm_MachineState *m,
 		  const dds_sample_info_t *info)
 {
-	struct hall_machine *r = row_of(h, m->machine);
+	struct hall_machine *r = find(h, m->machine);
 
+	if (!(r && r->writer == info->publication_handle) &&
+	    !topic_is_of(h->reader, info->publication_handle, m->machine))
+		return;
+	r = row_of(h, m->machine);
 	if (!r) {
 		h->beyond++;
 		return;
@@ -80,8 +90,7 @@ static void heard(struct hall *h, const edm_MachineState *m,
 static void left(struct hall *h, const char *name,
 		 const dds_sample_info_t *info)
 {
-	struct hall_machine *r = bsearch(name, h->row, h->n, sizeof(*h->row),
-					 by_name);
+	struct hall_machine *r = find(h, name);
 
 	if (r)
 		r->gone = info->instance_state != DDS_IST_ALIVE;

@@ -19,12 +19,9 @@ static void open_ends(struct post *p, dds_entity_t participant,
 		      const char *machine, enum topic out)
 {
 	const enum topic in = out == TOPIC_OFFER ? TOPIC_ANSWER : TOPIC_OFFER;
-	dds_qos_t *qos = dds_create_qos();
 
-	dds_qset_partition1(qos, machine);
-	p->publisher = dds_create_publisher(participant, qos, NULL);
-	p->subscriber = dds_create_subscriber(participant, qos, NULL);
-	dds_delete_qos(qos);
+	p->publisher = topic_part_create(participant, true, machine);
+	p->subscriber = topic_part_create(participant, false, machine);
 	p->writer = topic_writer_create(p->publisher, out);
 	p->reader = topic_reader_create(p->subscriber, in);
 }

@@ -263,7 +263,7 @@ static void on_event(void *arg, const struct talk_event *e)
 
 /* -- In the loop ----------------------------------------------------------- */
 
-int reports_open(struct reports *r, dds_entity_t participant,
+int reports_open(struct reports *r, dds_entity_t part,
 		 const char *machine, const char *key)
 {
 	static const enum topic topics[] = { TOPIC_REPORT, TOPIC_ALARM };
@@ -273,7 +273,7 @@ int reports_open(struct reports *r, dds_entity_t participant,
 		r->told[i] = calloc(TOPIC_KEPT_MAX, sizeof(*r->told[i]));
 		if (!r->told[i])
 			return DDS_RETCODE_OUT_OF_RESOURCES;
-		r->writer[i] = topic_writer_create(participant, topics[i]);
+		r->writer[i] = topic_writer_create(part, topics[i]);
 		if (r->writer[i] < 0)
 			return r->writer[i];
 	}

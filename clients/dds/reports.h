@@ -38,10 +38,10 @@ struct reports {
 };
 
 /**
- * reports_open() - of @machine; @key: key file, or NULL as in talk.h; both
- * lent.  Return: 0 or a negative DDS code.
+ * reports_open() - of @machine, whose publisher @part is; @key: key file, or
+ * NULL as in talk.h; both lent.  Return: 0 or a negative DDS code.
  */
-int reports_open(struct reports *r, dds_entity_t participant,
+int reports_open(struct reports *r, dds_entity_t part,
 		 const char *machine, const char *key);
 void reports_close(struct reports *r);
 

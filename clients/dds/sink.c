@@ -18,9 +18,12 @@ int sink_open(struct sink *s, dds_entity_t participant, struct ledger *l)
 {
 	static const enum topic topics[] = { TOPIC_REPORT, TOPIC_ALARM };
 
+	const dds_entity_t all = topic_part_create(participant, false,
+						   TOPIC_ALL_PARTS);
+
 	*s = (struct sink) { .ledger = l };
 	for (int i = 0; i < SINK_LISTS; i++) {
-		s->reader[i] = topic_reader_create(participant, topics[i]);
+		s->reader[i] = topic_reader_create(all, topics[i]);
 		if (s->reader[i] < 0)
 			return s->reader[i];
 	}
@@ -47,12 +50,23 @@ static void give_back(struct sink *s, int list)
 	s->n[list] = 0;
 }
 
+static bool is_his(const struct sink *s, int list, int at)
+{
+	const char *machine =
+		list == REPORTS ? ((edm_JobReport *)s->at[list][at])->machine :
+				  ((edm_Alarm *)s->at[list][at])->machine;
+
+	return s->info[list][at].valid_data &&
+	       topic_is_of(s->reader[list],
+			   s->info[list][at].publication_handle, machine);
+}
+
 static int put(struct sink *s, int list)
 {
 	int err = 0;
 
 	for (int i = 0; i < s->n[list] && err == 0; i++) {
-		if (!s->info[list][i].valid_data)
+		if (!is_his(s, list, i))
 			continue;
 		err = list == REPORTS ?
 			      ledger_report(s->ledger, s->at[list][i]) :

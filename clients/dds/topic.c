@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* The ports are 7400 + 250 * domain; above 230 they do not fit. */
 #define DOMAIN_MAX	230
@@ -79,6 +80,38 @@ dds_entity_t topic_reader_create(dds_entity_t owner, enum topic which)
 
 	dds_delete_qos(qos);
 	return reader;
+}
+
+dds_entity_t topic_part_create(dds_entity_t participant, bool writes,
+			       const char *name)
+{
+	dds_qos_t *qos = dds_create_qos();
+	dds_entity_t part;
+
+	dds_qset_partition1(qos, name);
+	part = writes ? dds_create_publisher(participant, qos, NULL) :
+			dds_create_subscriber(participant, qos, NULL);
+	dds_delete_qos(qos);
+	return part;
+}
+
+bool topic_is_of(dds_entity_t reader, dds_instance_handle_t writer,
+		 const char *machine)
+{
+	dds_builtintopic_endpoint_t *e =
+		dds_get_matched_publication_data(reader, writer);
+	char **part = NULL;
+	uint32_t n = 0;
+	bool is;
+
+	is = e && dds_qget_partition(e->qos, &n, &part) && n == 1 &&
+	     strcmp(part[0], machine) == 0;
+	for (uint32_t i = 0; i < n; i++)
+		dds_free(part[i]);
+	dds_free(part);
+	if (e)
+		dds_builtintopic_free_endpoint(e);
+	return is;
 }
 
 bool topic_has_writer(dds_entity_t reader, dds_instance_handle_t writer)

@@ -5,7 +5,7 @@
  * Here is everything on which writer and reader have to agree.  docs/fleet.md
  * is for those who write another reader.
  *
- * Threads: startup only, but for topic_has_writer().
+ * Threads: startup only, but for topic_has_writer() and topic_is_of().
  */
 #ifndef DDS_TOPIC_H
 #define DDS_TOPIC_H
@@ -19,6 +19,9 @@ enum topic {
 	TOPIC_STATE, TOPIC_REPORT, TOPIC_ALARM, TOPIC_OFFER, TOPIC_ANSWER,
 	TOPIC_NTOPICS
 };
+
+/* What a machine tells is in a partition with its name. */
+#define TOPIC_ALL_PARTS	"*"
 
 /* Each participant of an edm-dds has a name that begins so. */
 #define TOPIC_DDS	"edm-dds "
@@ -44,6 +47,21 @@ dds_entity_t topic_writer_create(dds_entity_t owner, enum topic which);
  * Return: the reader, or a negative DDS code.
  */
 dds_entity_t topic_reader_create(dds_entity_t owner, enum topic which);
+
+/**
+ * topic_part_create() - a publisher (@writes) or a subscriber, of partition
+ * @name.  Return: it, or a negative DDS code.
+ */
+dds_entity_t topic_part_create(dds_entity_t participant, bool writes,
+			       const char *name);
+
+/**
+ * topic_is_of() - does @writer write in the partition of @machine, and nowhere
+ * else?  DDS Security lets only the machine itself do so.  Not of one that has
+ * left.
+ */
+bool topic_is_of(dds_entity_t reader, dds_instance_handle_t writer,
+		 const char *machine);
 
 /** topic_has_writer() - does @reader still see this one? */
 bool topic_has_writer(dds_entity_t reader, dds_instance_handle_t writer);

@@ -30,8 +30,8 @@ from cyclonedds.idl.annotations import appendable, key  # noqa: E402
 from cyclonedds.idl.types import (  # noqa: E402
     array, bounded_str, float64, int64, uint32, uint64,
 )
-from cyclonedds.pub import DataWriter  # noqa: E402
-from cyclonedds.sub import DataReader  # noqa: E402
+from cyclonedds.pub import DataWriter, Publisher  # noqa: E402
+from cyclonedds.sub import DataReader, Subscriber  # noqa: E402
 from cyclonedds.topic import Topic  # noqa: E402
 from cyclonedds.util import duration  # noqa: E402
 
@@ -93,6 +93,11 @@ class MachineState(IdlStruct, typename="edm.MachineState"):
     known: uint32
 
 
+def of_all(participant):
+    """A subscriber that hears the partitions of all machines."""
+    return Subscriber(participant, Qos(Policy.Partition(["*"])))
+
+
 class Peer:
     """Keeps the last sample of each machine and whether it is alive."""
 
@@ -109,7 +114,12 @@ class Peer:
             self.participant, "EDM_MachineState", MachineState
         )
         self.writing = qos
-        self.reader = DataReader(self.participant, self.topic, qos=qos)
+        self.reader = DataReader(of_all(self.participant), self.topic, qos=qos)
+
+    def writer(self, machine):
+        """In the partition of this machine."""
+        part = Publisher(self.participant, Qos(Policy.Partition([machine])))
+        return DataWriter(part, self.topic, qos=self.writing)
 
     def close(self):
         self.reader = self.topic = self.participant = None
@@ -314,7 +324,7 @@ def test_a_hostile_sample_is_shown_as_harmless_text(peer):
         jumps=0, retracts=0, shorts=0, overruns=0, wake_late_max_us=-1e308,
         generator_fault="\x1b[2J", depth_far_mm=math.inf, known=1,
         **{f"told_{n}": math.inf for n in TOLD}, **words)
-    writer = DataWriter(peer.participant, peer.topic, qos=peer.writing)
+    writer = peer.writer(words["machine"])
     writer.write(s)
     for more in ((), ("--json",)):
         p = edm_fleet("--once", "--wait", "3", *more)
@@ -378,10 +388,10 @@ def stranger_says(m, **more):
 
 
 @contextlib.contextmanager
-def telling(sample):
+def telling(sample, part=None):
     """A program of its own says it, 20 times a second."""
     p, stop = Peer(), threading.Event()
-    writer = DataWriter(p.participant, p.topic, qos=p.writing)
+    writer = p.writer(sample.machine if part is None else part)
 
     def tell():
         while not stop.wait(0.05):
@@ -409,6 +419,23 @@ def test_a_name_that_two_programs_tell_is_disputed(fleet, peer):
         p = edm_fleet("--once", "--wait", "1")
         assert "told by two; also from" in p.stdout
     until(lambda: listed(m)["state"] == "idle", 20)
+
+
+@pytest.mark.parametrize("part", ["", "other"])
+def test_what_is_told_outside_of_a_machine_s_partition_is_not_heard(
+        fleet, peer, part):
+    """DDS Security gives each machine its own partition, and no other."""
+    m, other = fleet
+    m.start_edmd()
+    m.start_dds()
+    peer.state(m, "idle")
+    with telling(stranger_says(m, state="erode"), part):
+        peer.where(m, lambda s: s.state == "erode", 20)
+        for _ in range(3):
+            assert listed(m)["state"] == "idle"
+    with telling(stranger_says(other), part):
+        peer.state(other, "idle")
+        assert listed(other) == {}
 
 
 def test_an_edm_dds_that_is_started_anew_is_no_dispute(fleet, peer):
@@ -465,7 +492,7 @@ def test_garbage_is_counted_and_not_told_packet_by_packet(fleet, peer):
 
 def test_edm_fleet_says_that_new_machines_still_came(fleet, peer):
     m, _ = fleet
-    writer = DataWriter(peer.participant, peer.topic, qos=peer.writing)
+    writers = []
     with subprocess.Popen([str(BUILD / "edm-fleet"), "--once", "--wait", "1"],
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           text=True) as p:
@@ -473,7 +500,8 @@ def test_edm_fleet_says_that_new_machines_still_came(fleet, peer):
         while p.poll() is None:
             s = stranger_says(m)
             s.machine, n = f"{m.name}-{n}", n + 1
-            writer.write(s)
+            writers.append(peer.writer(s.machine))
+            writers[-1].write(s)
             time.sleep(0.1)
         assert p.returncode == 1
         assert "new ones still came" in p.stderr.read()

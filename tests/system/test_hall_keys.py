@@ -2,8 +2,10 @@
 """DDS Security with the keys of edm-hall-keys, by Debian's plugins: who has none,
 those of another hall, or those for something else, is not heard and hears nothing."""
 
+import importlib.util
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -13,11 +15,19 @@ import test_fleet
 from rig import QUICK_JOB, until
 
 pytest.importorskip("cryptography")
+from cryptography import x509  # noqa: E402
+from cryptography.hazmat.primitives import serialization  # noqa: E402
+
 PLUGINS = sorted(Path("/usr/lib").glob("*/*/libdds_security_auth.so"))
 pytestmark = pytest.mark.skipif(
     not PLUGINS, reason="Cyclone DDS has no plugins for security here")
 ROOT = Path(__file__).resolve().parents[2]
 DOMAIN = 1 + os.getpid() % 230
+# Beside the package of LCM's types, which has the same name.
+SPEC = importlib.util.spec_from_file_location(
+    "hall_keys", ROOT / "clients/python/edm/hall_keys.py")
+KEYS = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(KEYS)
 
 
 def hall_keys(folder, *args):
@@ -96,8 +106,9 @@ def test_a_stranger_hears_nothing_and_is_not_heard(cell, tmp_path):
     for keys in (None, tmp_path / "next/office"):
         assert heard(keys) == {}
     # Somebody else in the machine's name, without keys, with those of another
-    # hall, and with those of an office.
-    for keys in (None, tmp_path / "next" / cell.name, office):
+    # hall, with those of an office, and of another machine.
+    for keys in (None, tmp_path / "next" / cell.name, office,
+                 cell.hall / "other"):
         with Machine(tmp_path / f"false-{bool(keys)}-{keys and keys.name}"
                      ) as false:
             false.name, false.keys = cell.name, keys
@@ -111,6 +122,80 @@ def test_one_that_has_ended_is_not_heard(cell, tmp_path):
     assert p.returncode == 0, p.stderr
     assert heard(cell.hall / "late") == {}
     assert heard(cell.hall / "office") == {cell.name: "idle"}
+
+
+def killed(hall, steps, *args):
+    """A process that is killed before this step on the disk.  Return: its code."""
+    pid = os.fork()
+    if pid:
+        return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+
+    def counted(real):
+        def step(*given, **more):
+            nonlocal steps
+            steps -= str(hall) in str(given[0])
+            if steps == 0:
+                os.kill(os.getpid(), signal.SIGKILL)
+            return real(*given, **more)
+        return step
+
+    for name in "open", "replace", "mkdir", "rename", "rmdir", "unlink":
+        setattr(os, name, counted(getattr(os, name)))
+    os._exit(made(hall, *args))
+
+
+def made(hall, *args):
+    """In this process.  Return: its exit code."""
+    with pytest.MonkeyPatch.context() as m:
+        m.setattr(sys, "argv", ["edm-hall-keys", str(hall), *args])
+        return KEYS.main()
+
+
+def whole(folder):
+    """A key, and the certificate for it."""
+    pem = x509.load_pem_x509_certificate((folder / "identity.pem").read_bytes())
+    key = serialization.load_pem_private_key(
+        (folder / "identity.key").read_bytes(), None)
+    assert key.public_key() == pem.public_key()
+    return {f.name for f in folder.iterdir()} == {
+        "ca.pem", "identity.pem", "identity.key", "governance.p7s",
+        "permissions.p7s", "dds.xml"}
+
+
+@pytest.mark.parametrize("renew", [[], ["--renew"]])
+def test_killed_at_any_step_a_folder_is_whole_or_not_there(tmp_path, renew):
+    """And the same command again makes it."""
+    for n in range(1, 100):
+        hall = tmp_path / f"hall-{n}"
+        if renew:
+            assert made(hall, "--machine", "a") == 0
+        p = killed(hall, n, "--machine", "a", *renew)
+        there = (hall / "a").exists()
+        assert not there or whole(hall / "a"), n
+        if p == 0:
+            break
+        assert p == -9
+        assert made(hall, "--machine", "a", *["--renew"] * there) == 0, n
+        assert whole(hall / "a"), n
+        assert sorted(f.name for f in hall.iterdir()) == ["a", "ca.key",
+                                                          "ca.pem"]
+    assert n > 8
+
+
+def test_nobody_is_good_for_longer_than_the_authority(tmp_path):
+    hall = tmp_path / "hall"
+    assert hall_keys(hall, "--machine", "a", "--years", "1").returncode == 0
+    p = hall_keys(hall, "--machine", "b")
+    assert p.returncode == 0
+    ends = [x509.load_pem_x509_certificate(
+        (hall / n).read_bytes()).not_valid_after_utc
+        for n in ("ca.pem", "b/identity.pem")]
+    assert ends[0] == ends[1] and f"good until {ends[0]:%Y-%m-%d}" in p.stdout
+    # One that has ended: it began a day ago.
+    hall = tmp_path / "old"
+    p = hall_keys(hall, "--machine", "a", "--years", "1e-6")
+    assert p.returncode == 64 and "another folder" in p.stderr
+    assert not (hall / "a").exists()
 
 
 def test_what_is_wrong_is_refused_and_changes_nothing(tmp_path):
@@ -134,6 +219,14 @@ def test_what_is_wrong_is_refused_and_changes_nothing(tmp_path):
     assert hall_keys(hall, "--machine", "a", "--renew").returncode == 0
     now = (hall / "a/identity.key").read_bytes()
     assert now != kept[hall / "a/identity.key"]
+    assert (hall / "ca.pem").read_bytes() == kept[hall / "ca.pem"]
+    # A name that is there is refused before another one is made.
+    p = hall_keys(hall, "--machine", "new", "--machine", "a")
+    assert p.returncode == 64 and not (hall / "new").exists()
+    # The authority's own files are no folders of a machine.
+    for name in "ca.key", "ca.pem":
+        p = hall_keys(hall, "--machine", name, "--renew")
+        assert p.returncode == 64 and "each name once" in p.stderr
     assert (hall / "ca.pem").read_bytes() == kept[hall / "ca.pem"]
     (hall / "ca.key").write_text("torn")
     p = hall_keys(hall, "--machine", "b")

@@ -13,11 +13,13 @@ import datetime
 import importlib
 import os
 import re
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
 
-NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,30}$")
+# As machines have them; an authority's files have a dot.
+NAME = re.compile(r"[A-Za-z0-9_-]{1,31}\Z")
 HOLDS = ("ca.pem", "identity.pem", "identity.key", "governance.p7s",
          "permissions.p7s", "dds.xml")
 STATES = ("EDM_MachineState", "EDM_JobReport", "EDM_Alarm")
@@ -52,11 +54,10 @@ class Wrong(Exception):
     """It cannot be made; says what would be accepted."""
 
 
-def _topics(names: tuple[str, ...], partition: str = "") -> str:
+def _topics(names: tuple[str, ...], partition: str) -> str:
     inner = "".join(f"<topic>{n}</topic>" for n in names)
-    where = (f"<partitions><partition>{partition}</partition></partitions>"
-             if partition else "")
-    return f"<topics>{inner}</topics>{where}"
+    return (f"<topics>{inner}</topics><partitions>"
+            f"<partition>{partition}</partition></partitions>")
 
 
 def permissions(name: str, office: bool, begin: datetime.datetime,
@@ -66,12 +67,11 @@ def permissions(name: str, office: bool, begin: datetime.datetime,
     mine, theirs = ("EDM_JobOffer",), ("EDM_JobAnswer",)
     if not office:
         mine, theirs = theirs, mine
-    states = _topics(STATES)
+    if not office:
+        mine += STATES
     rules = [f"<publish>{_topics(mine, own)}</publish>",
              f"<subscribe>{_topics(theirs, own)}</subscribe>",
-             f"<subscribe>{states}</subscribe>"]
-    if not office:
-        rules.append(f"<publish>{states}</publish>")
+             f"<subscribe>{_topics(STATES, '*')}</subscribe>"]
     span = "".join(f"<not_{k}>{t:%Y-%m-%dT%H:%M:%S}</not_{k}>"
                    for k, t in (("before", begin), ("after", end)))
     return HEAD.format("permissions") + f"""<permissions><grant name="{name}">
@@ -120,27 +120,31 @@ class Authority:
                       - datetime.timedelta(days=1)).replace(microsecond=0)
         self.end = self.begin + datetime.timedelta(days=365.25 * years)
         self.folder = folder
-        self.key, self.certificate = self._kept() or self._made()
-
-    def _kept(self) -> tuple[Any, Any] | None:
-        key, pem = self.folder / "ca.key", self.folder / "ca.pem"
-        if not key.exists() and not pem.exists():
-            return None
+        key, pem = folder / "ca.key", folder / "ca.pem"
+        self.certificate: Any = None
         try:
-            return (self.forms.load_pem_private_key(key.read_bytes(), None),
-                    self.x509.load_pem_x509_certificate(pem.read_bytes()))
+            if not key.exists() and not pem.exists():
+                folder.mkdir(parents=True, exist_ok=True)
+                self.write_key(key, self._new_key())
+            self.key = self.forms.load_pem_private_key(key.read_bytes(), None)
+            if not pem.exists():
+                self.write(pem, self._pem(self._signed(
+                    self._name("edm hall"), self.key.public_key(), True)))
+            self.certificate = self.x509.load_pem_x509_certificate(
+                pem.read_bytes())
         except (OSError, ValueError) as e:
             raise Wrong(f"{key}, {pem}: {e}; both as this made them") from None
+        # Who is signed is good for no longer than who signs.
+        c = self.certificate
+        until = (getattr(c, "not_valid_after_utc", None) or
+                 c.not_valid_after.replace(tzinfo=datetime.timezone.utc))
+        if until <= datetime.datetime.now(datetime.timezone.utc):
+            raise Wrong(f"{pem} ended on {until:%Y-%m-%d}; a new hall in "
+                        "another folder, for all its machines")
+        self.end = min(self.end, until)
 
-    def _made(self) -> tuple[Any, Any]:
-        self.folder.mkdir(parents=True, exist_ok=True)
-        key = self.ec.generate_private_key(self.ec.SECP256R1())
-        self.key = key
-        self.certificate = None
-        pem = self._signed(self._name("edm hall"), key.public_key(), True)
-        self.write_key(self.folder / "ca.key", key)
-        self.write(self.folder / "ca.pem", self._pem(pem))
-        return key, pem
+    def _new_key(self) -> Any:
+        return self.ec.generate_private_key(self.ec.SECP256R1())
 
     def _name(self, cn: str) -> Any:
         return self.x509.Name([self.x509.NameAttribute(
@@ -187,13 +191,13 @@ class Authority:
 
     def identity(self, name: str, office: bool, o: argparse.Namespace) -> Path:
         """The folder for a host, whole or not at all."""
-        folder = self.folder / name
-        if folder.exists() and not o.renew:
-            raise Wrong(f"{folder} is there; --renew makes a new one, and the "
-                        "old one stays good until it ends")
-        folder.mkdir(exist_ok=True)
-        key = self.ec.generate_private_key(self.ec.SECP256R1())
-        self.write_key(folder / "identity.key", key)
+        folder, new, old = (self.folder / n for n in (
+            name, f".{name}.new", f".{name}.old"))
+        for left in (new, old):
+            shutil.rmtree(left, ignore_errors=True)
+        new.mkdir()
+        key = self._new_key()
+        self.write_key(new / "identity.key", key)
         for file, what in (
                 ("ca.pem", self._pem(self.certificate)),
                 ("identity.pem", self._pem(self._signed(
@@ -203,7 +207,11 @@ class Authority:
                     name, office, self.begin, self.end))),
                 ("dds.xml", settings(o.at or str(folder.resolve()),
                                      o.plugins).encode())):
-            self.write(folder / file, what)
+            self.write(new / file, what)
+        if folder.exists():
+            folder.rename(old)
+        new.rename(folder)
+        shutil.rmtree(old, ignore_errors=True)
         return folder
 
 
@@ -238,8 +246,11 @@ def options() -> argparse.Namespace:
         raise Wrong("nobody is named; --machine NAME, --office NAME")
     for n in names:
         if not NAME.match(n) or names.count(n) > 1:
-            raise Wrong(f"'{n}': each name once, of letters, digits and . _ -,"
-                        " at most 31")
+            raise Wrong(f"'{n}': each name once, of letters, digits and _ -, "
+                        "at most 31")
+        if (o.folder / n).exists() and not o.renew:
+            raise Wrong(f"{o.folder / n} is there; --renew makes a new one, "
+                        "and the old one stays good until it ends")
     if not 0 < o.years <= 100:
         raise Wrong(f"--years {o.years:g}: more than 0, at most 100")
     o.plugins = o.plugins or plugins_here()
