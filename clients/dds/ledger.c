@@ -16,11 +16,14 @@
 #include <unistd.h>
 
 #define VERSION		1
-#define BUSY_MS		5000
+#define BUSY_MS		500		/* less than the second in which sink.c
+					 * looks at the states */
 #define TEXT_MAX	256
 
 struct ledger {
-	sqlite3 *db;
+	sqlite3 *db;			/* NULL: not open */
+	const char *path;		/* NULL: in memory */
+	bool write;
 	int lock;			/* -1: none */
 	char why[TEXT_MAX];
 };
@@ -111,6 +114,8 @@ static int put(struct ledger *l, const char *sql, const char *types, ...)
 	va_list values;
 	int rc;
 
+	if (!l->db)
+		return -EIO;
 	va_start(values, types);
 	q = ask(l, sql, types, values);
 	va_end(values);
@@ -127,11 +132,11 @@ static int put(struct ledger *l, const char *sql, const char *types, ...)
 
 /* A file of its own: SQLite loses its own locks of a file that somebody else
  * in the process closes. */
-static int keep_out(struct ledger *l, const char *path)
+static int keep_out(struct ledger *l)
 {
 	char at[4096];
 
-	snprintf(at, sizeof(at), "%s-lock", path);
+	snprintf(at, sizeof(at), "%s-lock", l->path);
 	l->lock = open(at, O_RDWR | O_CREAT | O_CLOEXEC, 0640);
 	if (l->lock < 0 || flock(l->lock, LOCK_EX | LOCK_NB) == 0)
 		return 0;
@@ -153,8 +158,9 @@ static int version(struct ledger *l)
 	return v;
 }
 
-static int make(struct ledger *l, bool write)
+static int make(struct ledger *l)
 {
+	const bool write = l->write;
 	const int v = version(l);
 	int err = v < 0 ? -EIO : 0;
 
@@ -178,11 +184,29 @@ static int make(struct ledger *l, bool write)
 	return err < 0 ? err : run(l, memory);
 }
 
+static int open_db(struct ledger *l)
+{
+	const int how = l->write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE :
+				   SQLITE_OPEN_READONLY;
+	int err = 0;
+
+	if (sqlite3_open_v2(l->path ? l->path : ":memory:", &l->db, how,
+			    NULL) != SQLITE_OK)
+		err = failed(l, SQLITE_CANTOPEN);
+	if (err == 0) {
+		sqlite3_busy_timeout(l->db, BUSY_MS);
+		err = make(l);
+	}
+	if (err < 0) {
+		sqlite3_close(l->db);
+		l->db = NULL;
+	}
+	return err;
+}
+
 int ledger_open(struct ledger **ret, const char *path, bool write,
 		const char **why)
 {
-	const int how = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE :
-				SQLITE_OPEN_READONLY;
 	struct ledger *l = calloc(1, sizeof(*l));
 	int err = 0;
 
@@ -191,17 +215,10 @@ int ledger_open(struct ledger **ret, const char *path, bool write,
 	if (!l)
 		return -ENOMEM;
 	*why = l->why;
-	l->lock = -1;
+	*l = (struct ledger) { .path = path, .write = write, .lock = -1 };
 	if (path && write)
-		err = keep_out(l, path);
-	if (err == 0 && sqlite3_open_v2(path ? path : ":memory:", &l->db, how,
-					NULL) != SQLITE_OK)
-		err = failed(l, SQLITE_CANTOPEN);
-	if (err == 0) {
-		sqlite3_busy_timeout(l->db, BUSY_MS);
-		err = make(l, write);
-	}
-	return err;
+		err = keep_out(l);
+	return err < 0 ? err : open_db(l);
 }
 
 void ledger_close(struct ledger *l)
@@ -221,9 +238,30 @@ const char *ledger_why(const struct ledger *l)
 
 /* -- What is put in -------------------------------------------------------- */
 
+/* Somebody put the file away: what comes goes into a new one. */
+static void follow(struct ledger *l)
+{
+	int moved = 0;
+
+	if (l->db)
+		sqlite3_file_control(l->db, "main", SQLITE_FCNTL_HAS_MOVED,
+				     &moved);
+	if (moved) {
+		/* The old one is to be whole without what lies beside it. */
+		run(l, "PRAGMA wal_checkpoint(TRUNCATE)");
+		sqlite3_close(l->db);
+		l->db = NULL;
+	}
+}
+
 int ledger_begin(struct ledger *l)
 {
-	return run(l, "BEGIN IMMEDIATE");
+	int err = 0;
+
+	follow(l);
+	if (!l->db)
+		err = open_db(l);
+	return err < 0 ? err : run(l, "BEGIN IMMEDIATE");
 }
 
 int ledger_end(struct ledger *l, int err)

@@ -21,8 +21,9 @@
 struct ledger;
 
 /**
- * ledger_open() - @path: NULL is in memory.  @write: make it if it is not
- * there, and keep a second one out that writes.
+ * ledger_open() - @path: lent; NULL is in memory.  @write: make it if it is not
+ * there, also when it is moved or removed later, and keep a second one out that
+ * writes.
  *
  * Return: 0; -EALREADY: another program writes it; -EPROTO: of a newer release;
  * else -errno.  @why: in words.

@@ -6,6 +6,7 @@ The peer is PyPI's cyclonedds; its types are written out here by hand from
 messages/edm.idl.
 """
 
+import contextlib
 import dataclasses
 import errno
 import gc
@@ -13,6 +14,7 @@ import json
 import os
 import sqlite3
 import subprocess
+import time
 
 import pytest
 import rig
@@ -27,9 +29,11 @@ from cyclonedds.idl.annotations import appendable, key  # noqa: E402
 from cyclonedds.idl.types import (  # noqa: E402
     bounded_str, float64, int64, uint32,
 )
+from cyclonedds.pub import DataWriter, Publisher  # noqa: E402
 from cyclonedds.sub import DataReader  # noqa: E402
 from cyclonedds.topic import Topic  # noqa: E402
 from cyclonedds.util import duration  # noqa: E402
+import test_fleet  # noqa: E402
 from test_fleet import FleetMachine, edm_fleet  # noqa: E402
 
 
@@ -85,7 +89,7 @@ class Reader:
         qos = Qos(Policy.Reliability.Reliable(duration(milliseconds=100)),
                   Policy.Durability.TransientLocal, Policy.History.KeepAll)
         self.readers = [
-            DataReader(self.participant,
+            DataReader(test_fleet.of_all(self.participant),
                        Topic(self.participant, name, kind), qos=qos)
             for name, kind in (("EDM_JobReport", JobReport),
                                ("EDM_Alarm", Alarm))]
@@ -319,6 +323,65 @@ def test_a_full_disk_of_the_sink_loses_nothing(cell, tmp_path, shim):
     sink.has(cell, "a", "b", "c")
     until(lambda: "all is stored again" in sink.log.read_text(), 30)
     assert sink.end() == 0
+
+
+def test_a_file_that_was_put_away_is_begun_anew(cell, tmp_path):
+    sink = Sink(tmp_path)
+    cut(cell, "a")
+    sink.has(cell, "a")
+    os.rename(sink.file, tmp_path / "disk/old.db")
+    cut(cell, "b")
+    sink.has(cell, "b")
+    os.unlink(sink.file)
+    cut(cell, "c")
+    sink.has(cell, "c")
+    # Its folder is away for a while: what comes is kept.
+    os.rename(tmp_path / "disk", tmp_path / "away")
+    cut(cell, "d")
+    until(lambda: "nothing is stored" in sink.log.read_text(), 30)
+    cut(cell, "e")
+    os.rename(tmp_path / "away", tmp_path / "disk")
+    sink.has(cell, "c", "d", "e")
+    assert sink.end() == 0
+    with contextlib.closing(sqlite3.connect(tmp_path / "disk/old.db")) as db:
+        assert db.execute("SELECT job FROM report").fetchall() == [("a",)]
+
+
+def test_hours_go_on_while_somebody_locks_the_file(cell, tmp_path):
+    sink = Sink(tmp_path)
+
+    def hours():
+        return sum(sink.rows("s FROM spent", cell))
+    until(hours, 30)
+    begun, had = time.monotonic(), hours()
+    with contextlib.closing(sqlite3.connect(sink.file, timeout=60,
+                                            isolation_level=None)) as db:
+        db.execute("BEGIN IMMEDIATE")
+        until(lambda: "nothing is stored" in sink.log.read_text(), 30)
+        time.sleep(15)
+        locked = time.monotonic() - begun
+    until(lambda: hours() > had + locked / 2, 30)
+    assert sink.end() == 0
+
+
+def test_a_report_in_another_s_name_is_not_kept(cell, tmp_path):
+    sink, d = Sink(tmp_path), DomainParticipant(0)
+    topic = Topic(d, "EDM_JobReport", JobReport)
+    qos = Qos(Policy.Reliability.Reliable(duration(seconds=10)),
+              Policy.Durability.TransientLocal, Policy.History.KeepAll)
+    ends = []
+    for part in "other", cell.name:
+        ends.append(DataWriter(Publisher(d, Qos(Policy.Partition([part]))),
+                               topic, qos=qos))
+        until(ends[-1].get_matched_subscriptions)
+        ends[-1].write(JobReport(**{
+            f.name: 0 if f.type in (int64, float64, uint32) else part[:9]
+            for f in dataclasses.fields(JobReport)} | {
+                "machine": cell.name, "number": len(ends)}))
+    sink.has(cell, cell.name[:9])
+    assert sink.end() == 0
+    assert sink.rows("job FROM report", cell) == [cell.name[:9]]
+    ends.clear()
 
 
 def test_only_one_sink_writes_a_file(cell, tmp_path):

@@ -2,9 +2,12 @@
 """edm-gateway: what a factory's OPC UA client sees of the machines.  The client
 is asyncua's, and knows only the names of OPC 40501-1."""
 
+import argparse
 import asyncio
 import contextlib
 import datetime
+import importlib.util
+import json
 import os
 import signal
 import socket
@@ -15,7 +18,7 @@ from pathlib import Path
 
 import pytest
 from rig import BUILD, SLOW_JOB, until
-from test_fleet import FleetMachine
+from test_fleet import FleetMachine, peer, stranger_says  # noqa: F401
 
 pytest.importorskip("asyncua", reason="pip install asyncua")
 pytest.importorskip("cyclonedds", reason="pip install cyclonedds")
@@ -28,6 +31,11 @@ from cryptography.hazmat.primitives.asymmetric import rsa  # noqa: E402
 ROOT = Path(__file__).resolve().parents[2]
 TOOL = "http://opcfoundation.org/UA/MachineTool/"
 MACHINERY = "http://opcfoundation.org/UA/Machinery/"
+# Beside the package of LCM's types, which has the same name.
+SPEC = importlib.util.spec_from_file_location(
+    "gateway", ROOT / "clients/python/edm/gateway.py")
+GATEWAY = sys.modules["gateway"] = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(GATEWAY)
 DI = "http://opcfoundation.org/UA/DI/"
 
 
@@ -231,6 +239,58 @@ def test_an_edm_fleet_that_dies_is_begun_anew(shop):
     assert fleet_of(f.gateway) != first
 
 
+def test_a_stranger_s_name_ends_nothing(shop, peer):  # noqa: F811
+    """That of a node of a machine, and others that no machine can have."""
+    m, f = shop
+    writers = []
+    for name in f"{m.name}.gap_v", "a:b", "a/b", "..", "0:Server", "\x1b[2J", \
+            "x" * 31:
+        s = stranger_says(m)
+        s.machine = name
+        writers.append(peer.writer(name))
+        writers[-1].write(s)
+    until(lambda: f.names() == sorted([m.name, s.machine]), 30)
+    was = f.value(f.own(m.name, "cycle"))
+    until(lambda: f.value(f.own(m.name, "cycle")) > was, 20)
+    assert f.names() == sorted([m.name, s.machine])
+    assert f.gateway.poll() is None
+
+
+SAYS = """#!/bin/sh
+sleep 1; cat {0}/lines; : > {0}/said; sleep 600
+"""
+
+
+def test_what_was_said_meanwhile_is_over(tmp_path):
+    """A gateway that is slower than edm-fleet shows what was said last."""
+    (tmp_path / "lines").write_text("".join(
+        json.dumps({"machines": [{"machine": "m", "n": n}]}) + "\n"
+        for n in range(1000)))
+    says = tmp_path / "says"
+    says.write_text(SAYS.format(tmp_path))
+    says.chmod(0o755)
+    shown = []
+
+    class Slow:
+        async def show(self, m):
+            shown.append(m["n"])
+            while not (tmp_path / "said").exists():
+                await asyncio.sleep(0.01)
+            await asyncio.sleep(0.2)
+
+    async def run_it():
+        o = argparse.Namespace(fleet=str(says), domain=0)
+        task = asyncio.create_task(GATEWAY.follow(Slow(), o))
+        while 999 not in shown:
+            await asyncio.sleep(0.01)
+        task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
+
+    asyncio.run(asyncio.wait_for(run_it(), 300))
+    assert len(shown) < 5, shown
+
+
 def make_certificate(folder):
     """A key, and a certificate for it that it signed itself."""
     key = rsa.generate_private_key(public_exponent=65537, key_size=2048)
@@ -272,6 +332,7 @@ def test_it_refuses_with_a_reason(tmp_path):
     for args, words in (
         (["--nodesets", str(tmp_path)], "is not there; --nodesets FOLDER"),
         (["--certificate", "a.pem"], "belong together"),
+        (["--fleet", str(tmp_path)], "is no program; --fleet PROGRAM"),
         (["--certificate", "/no/a.pem", "--private-key", "/no/b.pem"],
          "a certificate and its key"),
     ):

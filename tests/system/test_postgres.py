@@ -167,6 +167,63 @@ def test_what_goes_on_is_as_it_ended_last(tmp_path, server):
     assert server.rows("count(*) FROM edm.alarm") == [(2501,)]
 
 
+def filled(tmp_path, n):
+    sink = Sink(tmp_path)
+    until(lambda: sink.file.exists() and sink.rows("1 FROM spent", M) == [])
+    assert sink.end() == 0
+    fill(sink.file, 0, n)
+    return sink.file
+
+
+def numbers(server):
+    return [n for n, in server.rows("number FROM edm.alarm")]
+
+
+def test_what_somebody_does_to_the_tables_ends_nothing(tmp_path, server):
+    """They are made again, or what is wrong is said until it is right."""
+    file = filled(tmp_path, 3)
+    p = copier(file, server.url)
+    try:
+        until(lambda: numbers(server) == [0, 1, 2], 60)
+        with psycopg.connect(server.url, autocommit=True) as db:
+            db.execute("DROP TABLE edm.alarm")
+        fill(file, 3, 1)
+        until(lambda: numbers(server) == [0, 1, 2, 3], 60)
+        with psycopg.connect(server.url, autocommit=True) as db:
+            db.execute("ALTER TABLE edm.alarm RENAME COLUMN place_mm TO place")
+        fill(file, 4, 1)
+        while "place_mm" not in p.stderr.readline():
+            assert p.poll() is None
+        with psycopg.connect(server.url, autocommit=True) as db:
+            db.execute("ALTER TABLE edm.alarm RENAME COLUMN place TO place_mm")
+        until(lambda: numbers(server) == [0, 1, 2, 3, 4], 60)
+    finally:
+        p.terminate()
+        p.wait(20)
+
+
+def test_a_file_that_is_replaced_or_emptied_is_followed(tmp_path, server):
+    file = filled(tmp_path, 3)
+    p = copier(file, server.url)
+    try:
+        until(lambda: numbers(server) == [0, 1, 2], 60)
+        with sqlite3.connect(file) as db:
+            db.execute("DELETE FROM alarm")
+        db.close()
+        fill(file, 10, 1)
+        until(lambda: numbers(server) == [0, 1, 2, 10], 60)
+        (tmp_path / "next").mkdir()
+        filled(tmp_path / "next", 0)
+        fill(tmp_path / "next/disk/fleet.db", 20, 1)
+        for old in file.parent.glob("fleet.db*"):
+            old.unlink()
+        os.rename(tmp_path / "next/disk/fleet.db", file)
+        until(lambda: numbers(server) == [0, 1, 2, 10, 20], 60)
+    finally:
+        p.terminate()
+        p.wait(20)
+
+
 class M:
     name = "m"
 
@@ -187,4 +244,6 @@ def test_what_is_not_there_is_said(tmp_path, server):
         db.execute("CREATE USER guest")
     code, said = once(
         sink.file, f"postgresql://guest@/postgres?host={server.folder}")
-    assert code == 78 and "may make the schema edm" in said
+    assert code == 69 and "may make the schema edm" in said
+    code, said = once(sink.file, "nonsense")
+    assert code == 69 and "a URL" in said

@@ -15,6 +15,7 @@ import contextlib
 import importlib
 import json
 import logging
+import re
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -42,6 +43,10 @@ GENERATOR = ("undefined", "ready", "active-low-voltage",
 PROGRAM = (("Initializing", 135), ("Running", 138), ("Ended", 140),
            ("Interrupted", 139), ("Aborted", 141))
 AXES = "XYZABCUV"
+# As machines have them; of another name only a stranger can speak.
+NAME = re.compile(r"[A-Za-z0-9_-]{1,31}\Z")
+# Values of a node that wait for a client that takes none.
+WAITING = 16
 
 
 class Wrong(Exception):
@@ -109,6 +114,7 @@ class Hall:
 
         self.server = self.a.Server(user_manager=Reader())
         await self.server.init()
+        self.server.iserver.max_monitored_item_queue_size = WAITING
         self.server.set_endpoint(f"opc.tcp://{o.listen}/edm")
         self.server.set_server_name("edm-gateway")
         await self._secure(o, role)
@@ -276,17 +282,38 @@ def say(text: str) -> None:
     print(f"edm-gateway: {text}", file=sys.stderr, flush=True)
 
 
+async def listen(lines: asyncio.StreamReader,
+                 newest: asyncio.Queue[bytes]) -> None:
+    """Only what was said last counts; nothing: it has ended."""
+    while True:
+        try:
+            line = await lines.readline()
+        except ValueError:
+            line = b""
+        if newest.full():
+            newest.get_nowait()
+        newest.put_nowait(line)
+        if not line:
+            return
+
+
 async def follow(hall: Hall, o: argparse.Namespace) -> None:
     """What one edm-fleet says, until it ends."""
     child = await asyncio.create_subprocess_exec(
         o.fleet, "--watch", "--json", "--domain", str(o.domain),
         stdout=asyncio.subprocess.PIPE, limit=1 << 24)
+    newest: asyncio.Queue[bytes] = asyncio.Queue(1)
     assert child.stdout
+    listening = asyncio.create_task(listen(child.stdout, newest))
     try:
-        async for line in child.stdout:
+        while line := await newest.get():
             for m in json.loads(line)["machines"]:
-                await hall.show(m)
+                if NAME.match(m["machine"]):
+                    await hall.show(m)
+                # Clients are answered between two machines.
+                await asyncio.sleep(0)
     finally:
+        listening.cancel()
         with contextlib.suppress(ProcessLookupError):
             child.terminate()
         await child.wait()
@@ -304,10 +331,10 @@ async def serve(o: argparse.Namespace) -> None:
             try:
                 await follow(hall, o)
                 say("edm-fleet has ended; goes on trying")
-            except FileNotFoundError:
-                raise Wrong(f"{o.fleet} is not there; --fleet PROGRAM") \
+            except (FileNotFoundError, PermissionError):
+                raise Wrong(f"{o.fleet} is no program; --fleet PROGRAM") \
                     from None
-            except ValueError as e:
+            except (OSError, ValueError) as e:
                 say(f"edm-fleet: {e}; goes on trying")
             await hall.nobody_tells()
             await asyncio.sleep(AGAIN_S)

@@ -94,6 +94,10 @@ class Copier:
         """Copy what is new.  Return: rows."""
         n = 0
         for t in TABLES:
+            top, = source.execute(
+                f"SELECT coalesce(max(rowid), 0) FROM {t.name}").fetchone()
+            if top < self.last.get(t.name, 0):
+                self.last[t.name] = 0   # rows were taken out
             rows = source.execute(
                 t.new(), (self.last.get(t.name, 0),)).fetchall()
             self._put(to, t, [r[1:] for r in rows])
@@ -140,9 +144,15 @@ def open_source(path: Path) -> sqlite3.Connection:
                            timeout=EVERY_S)
 
 
+def number_of(path: Path) -> int:
+    """By which a file is the same, whatever its name."""
+    return path.stat().st_ino if path.exists() else 0
+
+
 def copy(o: argparse.Namespace, psycopg: Any) -> None:
     """Until the file or the server is away."""
-    source, copier = open_source(o.file), Copier()
+    number, copier = number_of(o.file), Copier()
+    source = open_source(o.file)
     with source, psycopg.connect(o.database, autocommit=True,
                                  connect_timeout=10) as to:
         source.execute("SELECT 1 FROM spent LIMIT 1")
@@ -151,6 +161,8 @@ def copy(o: argparse.Namespace, psycopg: Any) -> None:
             to.execute(t.made())
         say(f"copies {o.file}")
         while True:
+            if number_of(o.file) != number:
+                raise sqlite3.OperationalError("it was replaced")
             n = copier.look(source, to)
             if n < ROWS and o.once:
                 return
@@ -165,13 +177,13 @@ def serve(o: argparse.Namespace) -> int:
         try:
             copy(o, psycopg)
             return 0
-        except psycopg.ProgrammingError as e:
-            raise Wrong(f"{e}; a database in which this user may make the "
-                        "schema edm") from None
         except sqlite3.Error as e:
             why = f"{o.file}: {e}; edm-fleet record writes it"
         except psycopg.Error as e:
             why = str(e).strip().replace("\n", " ")
+            if isinstance(e, psycopg.ProgrammingError):
+                why += ("; a URL, and a database in which this user may make "
+                        "the schema edm and its tables, as they are here")
         if o.once:
             say(why)
             return 69
