@@ -11,6 +11,7 @@
 #   make check-vm   all that runs on a PREEMPT_RT kernel in a virtual machine; the
 #                   shorter half of it is in check
 #   make bench-plan edm-plan on meshes of 10^3 to 10^6 triangles, some minutes
+#   make hall       10, 30 and 100 machines over DDS, some 20 minutes
 #   make bench      speed, as medians side by side
 #   make count      instructions of what is done most, into docs/performance.md
 #   make calls      system calls of edmd's threads, into docs/performance.md
@@ -697,6 +698,12 @@ bench-plan:
 	@$(MAKE) --no-print-directory $(B)/edm-plan $(B)/bench/plan
 	@EDM_BUILD=$(B) .venv/bin/python tests/bench/plan
 
+# Machines over DDS on this computer, and the cycle beside edm-dds.
+HALL	:= 10 30 100
+hall: all
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/hall $(HALL)
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/dds-cycle
+
 bench: vm
 	@tests/setup check
 	@$(MAKE) --no-print-directory $(BENCH_X)
@@ -979,7 +986,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' -type f 2>/dev/null)
 
-.PHONY: all panel pictures-panel panel-load panel-frames panel-firefox demo bench-plan check quick vm vm-parts check-vm units run-units run-crossings clang bench \
+.PHONY: all hall panel pictures-panel panel-load panel-frames panel-firefox demo bench-plan check quick vm vm-parts check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo experiments-wire experiments-times invariants \
 	walkable wire-random \
