@@ -257,7 +257,7 @@ def test_a_stranger_s_name_ends_nothing(shop, peer):  # noqa: F811
 
 
 SAYS = """#!/bin/sh
-sleep 1; cat {0}/lines; : > {0}/said; sleep 600
+sleep 1; cat {0}/lines; : > {0}/said; exec sleep 600
 """
 
 
