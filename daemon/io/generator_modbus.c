@@ -556,7 +556,6 @@ static void modbus_write(struct generator *g)
 	const struct stamped wishes = STAMPED(m->wishes, m->wish_next);
 	struct wish w = { .version = g->asked, .again = m->last.again };
 
-	w.again += g->anew;
 	for (int i = 0; i < PROCESS_NFIELDS; i++) {
 		if (!goes_by_register(g, i))
 			continue;
@@ -564,6 +563,8 @@ static void modbus_write(struct generator *g)
 		w.count[i] = (uint16_t)generator_count(&g->way[i], i,
 						       g->value[i]);
 	}
+	/* What is not asked for any more a person may set. */
+	w.again += g->anew || (m->last.given & ~w.given);
 	if (m->wish_next && memcmp(&w, &m->last, sizeof(w)) == 0)
 		return;
 	m->last = w;

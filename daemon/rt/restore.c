@@ -31,6 +31,7 @@ static void restore_actions(struct cycle *c)
 	const struct interp_program *p = &c->cursor.p;
 
 	c->job.action_done = last_done(c);
+	c->conditions.of_cut = p->segs[c->job.action_done].cond;
 	for (uint32_t i = 0; i <= c->job.action_done; i++) {
 		const struct interp_seg *s = &p->segs[i];
 

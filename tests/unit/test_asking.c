@@ -388,11 +388,11 @@ static void what_a_person_sets_is_asked_for_at_each_change(void **state)
 }
 
 /* It still asks for the values of before when it comes to its begin: a person
- * sets those of the first cut, each time. */
+ * sets those of the first cut, each time, and nothing is on its way by then. */
 static void a_job_stands_with_the_values_of_its_first_cut(void **state)
 {
 	struct cycle_config k = limited_config(true);
-	struct slow g = slow_of(1, 0);
+	struct slow g = slow_of(1, SLOW_MAX);
 	struct rig r;
 
 	(void)state;
@@ -402,6 +402,7 @@ static void a_job_stands_with_the_values_of_its_first_cut(void **state)
 		for (int i = 0; i < 3000 && !r.c.asking.stands; i++)
 			period(&r, &g, SPARKING_V);
 		assert_int_equal(r.c.asking.stands, 1u << INTERP_TECH_ON_US);
+		assert_int_equal(r.in.generator.in_force, r.out.asked);
 		for (int i = 0; i < 50; i++) {
 			period(&r, &g, SPARKING_V);
 			assert_int_equal(r.c.state, STATE_HOLD);

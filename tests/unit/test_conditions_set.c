@@ -4,6 +4,7 @@
  */
 #include "cycle_help.h"
 #include "process.h"
+#include "restore.h"
 
 #include <errno.h>
 
@@ -259,6 +260,41 @@ static void a_set_in_a_retract_is_for_the_cut(void **state)
 	check_set_in_a_retract(true);
 }
 
+/* Another edmd takes over where the one before had lifted. */
+static void killed(struct rig *r)
+{
+	struct cycle_past past = { .far_mm = r->c.far_mm };
+	const struct cycle_config k = r->c.config;
+	const struct interp_cursor at = r->c.cursor;
+	enum cycle_answer answer;
+
+	memcpy(past.pos, r->c.out.target, sizeof(past.pos));
+	cycle_init(&r->c, &k);
+	memcpy(r->c.out.target, past.pos, sizeof(past.pos));
+	assert_int_equal(cycle_restore(&r->c, &at, &past, &answer), RESTORED);
+}
+
+static void a_set_behind_a_restart_is_for_the_cut(void **state)
+{
+	const struct conds t = usual_conds();
+	struct rig r;
+
+	(void)state;
+	rig_conds(&r, &t);
+	cut_until(&r, 4.2);
+	for (int i = 0; i < 1000 && place(&r) > 3.9; i++)
+		step(&r, SHORTED_V);
+	killed(&r);
+	step(&r, OPEN_V);
+	check_c1(&r);
+	assert_int_equal(set(&r, INTERP_TECH_SERVO_V, 33), ANSWER_DONE);
+	check_c1(&r);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	cut_until(&r, 4.2);
+	assert_true(r.c.gap.servo_v == 33);
+	rig_free(&r);
+}
+
 /* A change of it is written down with the value that it replaces. */
 static void the_polarity_of_a_retract_over_m4_is_that_of_the_cut(void **state)
 {
@@ -471,6 +507,7 @@ int main(void)
 		cmocka_unit_test(a_set_goes_over_and_is_taken_back),
 		cmocka_unit_test(a_set_belongs_to_its_condition),
 		cmocka_unit_test(a_set_in_a_retract_is_for_the_cut),
+		cmocka_unit_test(a_set_behind_a_restart_is_for_the_cut),
 		cmocka_unit_test(the_polarity_of_a_retract_over_m4_is_that_of_the_cut),
 		cmocka_unit_test(a_set_that_cannot_be_leaves_all_as_it_was),
 		cmocka_unit_test(the_list_of_sets_is_bounded),

@@ -256,6 +256,34 @@ static void no_spark_has_another_condition_however_late_it_is(void **state)
 	assert_true(shop.sparks > 1000 && shop.waits > 30);
 }
 
+static void ask_on(struct shop *s, double on_us)
+{
+	s->r.out.pulse[INTERP_TECH_ON_US] = on_us;
+	s->r.out.asked++;
+	s->axes.write(s->axes.self, &s->r.out);
+}
+
+static void until_register(int i, uint16_t value)
+{
+	for (int n = 0; n < TURNS_MOST &&
+	     slave.map->tab_registers[i] != value; n++)
+		usleep(TURN_US);
+	assert_int_equal(slave.map->tab_registers[i], value);
+}
+
+/* It does not tell it, and edmd asked for the same before. */
+static void what_a_person_set_meanwhile_is_set_anew(void **state)
+{
+	(void)state;
+	shop_open_with(&shop, 1, "told_on_us = none\n");
+	ask_on(&shop, 8);
+	until_register(1, 80);
+	ask_on(&shop, NAN);
+	set_registers((const uint16_t[NREGISTERS]) { 0, 555 });
+	ask_on(&shop, 8);
+	until_register(1, 80);
+}
+
 /* Before the first period of the cycle. */
 static void until_told(struct shop *s, int field, double value)
 {
@@ -708,6 +736,7 @@ int main(void)
 		WITH_SHOP(c200_reaches_it_whole_before_the_first_spark),
 		WITH_SHOP(what_it_does_not_tell_has_settle_ms),
 		WITH_SHOP(no_spark_has_another_condition_however_late_it_is),
+		WITH_SHOP(what_a_person_set_meanwhile_is_set_anew),
 		WITH_SHOP(what_it_loses_between_jobs_is_no_fault),
 		WITH_SHOP(what_it_refuses_never_sparks_and_is_a_fault),
 		WITH_SHOP(one_that_loses_its_values_ends_the_sparks),

@@ -162,7 +162,7 @@ static bool would_spark(const struct cycle *c)
 
 bool asking_hand(struct cycle *c)
 {
-	if (!would_spark(c) || !unset(c))
+	if (!would_spark(c) || !unset(c) || !c->asking.has)
 		return false;
 	c->asking.stands = unset(c);
 	return true;

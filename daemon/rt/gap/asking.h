@@ -94,7 +94,8 @@ void asking_step(struct cycle *c, const struct io_inputs *in);
 /** asking_waits() - would there be sparks if the condition were in force? */
 bool asking_waits(const struct cycle *c);
 
-/** asking_hand() - a person must set something before the sparks.
+/** asking_hand() - a person must set something before the sparks, once the
+ *  generator has the rest, so that nothing is on its way to it.
  *  Return: true if the machine is to stand for it. */
 bool asking_hand(struct cycle *c);
 
