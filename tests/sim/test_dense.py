@@ -338,8 +338,8 @@ def arcs_and_corners_text(rng, mm):
 def test_arcs_between_corners_are_no_tighter_beside_these(tmp_path):
     """Windows beside a corner took it for a bend of the path, and the direction
     of one window for the bend of another; the whole way had as little
-    acceleration as that left: up to 1.27 times as long.  A twelfth does not
-    get all the stands that whole lines get (docs/speed.md)."""
+    acceleration as that left: up to 1.27 times as long.  Some do not get all the
+    stands that whole lines get (docs/speed.md)."""
     shares = {}
     for seed in range(40):
         rng = random.Random(seed)
@@ -353,5 +353,5 @@ def test_arcs_between_corners_are_no_tighter_beside_these(tmp_path):
         long = took(None)
         for mm in 0.05, 0.02, 0.01:
             shares[seed, mm] = took(mm) / long
-    over = {k: round(x, 4) for k, x in shares.items() if x > 1.01}
-    assert len(over) <= 12 and not any(x > 1.1 for x in over.values()), over
+    over = {k: round(x, 4) for k, x in shares.items() if x > 1.05}
+    assert not over, over

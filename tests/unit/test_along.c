@@ -45,15 +45,14 @@ static void no_bend_takes_more_jerk_than_an_axis_has(void **st)
 		const double way[INTERP_AXES_WAY] = {
 			any(&s, -2, 1), any(&s, -4, 4), any(&s, -4, 8)
 		};
+		const double by = fabs(way[0]);
 		const struct interp_straight kept = {
-			x.a_mm_s2[0] * uniform(&s, 0.05, 0.9),
-			x.j_mm_s3[0] * uniform(&s, 0.05, 0.9)
+			x.a_mm_s2[0] / by * uniform(&s, 0.05, 0.9),
+			x.j_mm_s3[0] / by * uniform(&s, 0.05, 0.9)
 		};
 		struct interp_straight left;
 		const double v = interp_axes_mm_s(&x, way, &kept, &left);
-		const double by = fabs(way[0]);
-		const double a = smaller(smaller(kept.a_mm_s2,
-						 0.9 * x.a_mm_s2[0] / by),
+		const double a = smaller(kept.a_mm_s2,
 					 sqrt(v * kept.j_mm_s3));
 		const double bent = (fabs(way[2]) * v * v +
 				     3 * fabs(way[1]) * a) * v;

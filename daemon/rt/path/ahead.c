@@ -16,7 +16,6 @@
 #include "path/ahead.h"
 #include "path/laws.h"
 #include "path/lookahead.h"
-#include "path/slow.h"
 #include "path/walk.h"
 #include "path/place.h"
 
@@ -96,13 +95,6 @@ struct soft {
 	double stand_mm;		/* INFINITY: everywhere */
 };
 
-/* The nearer one of the goal and the stand. */
-static double end_mm(const struct ahead_move *w, double stand_mm)
-{
-	return isfinite(stand_mm) && w->toward * (stand_mm - w->goal_mm) < 0 ?
-	       stand_mm : w->goal_mm;
-}
-
 /* From here to where the move ends or has to stand.  It is the same for the
  * whole of a move, so what can be met can be met to its end. */
 static struct soft limits_of(const struct cycle *c, const struct ahead_move *w)
@@ -134,17 +126,12 @@ static struct soft limits_of(const struct cycle *c, const struct ahead_move *w)
 }
 
 /* A move that goes on to another goal stands at the first one, if beyond it the
- * axes allow less, or if its ceiling was chosen for the way to there. */
+ * axes allow less. */
 static void go_on_to(struct cycle *c, const struct ahead_move *w)
 {
 	struct cycle_ahead *a = &c->ahead;
 	const struct soft s = limits_of(c, w);
 
-	if (isfinite(a->l.v_max_mm_s)) {
-		if (!isfinite(a->stand_mm))
-			a->stand_mm = a->goal_mm;
-		return;
-	}
 	if (is_softer(&s.l, &a->l))
 		return;
 	a->stand_mm = s.stand_mm;
@@ -184,7 +171,6 @@ static void begin(struct cycle *c, const struct ahead_move *w)
 		const struct soft s = limits_of(c, w);
 
 		a->l = s.l;
-		slow_limits(c, w, end_mm(w, s.stand_mm), &a->l);
 		a->stand_mm = s.stand_mm;
 	} else if (!turns) {
 		go_on_to(c, w);
@@ -382,7 +368,7 @@ double ahead_distance(struct cycle *c, const struct ahead_move *w)
 	double v, most, step;
 
 	begin(c, w);
-	v = fmin(speed_here(c, w, &most), c->ahead.l.v_max_mm_s);
+	v = speed_here(c, w, &most);
 	/* First to a stand: what lies between here and there is not seen. */
 	if (c->ahead.turns)
 		v = 0;

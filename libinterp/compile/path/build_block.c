@@ -38,8 +38,6 @@ static struct interp_program_head layout(const struct interp_build *b)
 		.nstops = b->stops.n,
 		.nnumbers = b->numbers.n,
 		.norigins = b->origins.n,
-		.nbends = b->naxes > 1 ? (nsegs - 1) / INTERP_BENDS_SEGS + 1 :
-					 0,
 		.naxes = b->naxes,
 		.strategy = b->o.strategy,
 		.tolerance_milli = b->o.tolerance_milli,
@@ -61,8 +59,7 @@ static struct interp_program_head layout(const struct interp_build *b)
 	h.stops_at = h.pieces_at + b->pieces.n * b->pieces.size;
 	h.numbers_at = h.stops_at + b->stops.n * b->stops.size;
 	h.origins_at = h.numbers_at + b->numbers.n * b->numbers.size;
-	h.bends_at = h.origins_at + b->origins.n * b->origins.size;
-	h.runs_at = h.bends_at + h.nbends * sizeof(struct interp_bends);
+	h.runs_at = h.origins_at + b->origins.n * b->origins.size;
 	h.bytes = h.runs_at + b->runs.n * b->runs.size;
 	return h;
 }
@@ -173,8 +170,7 @@ void *interp_build_take(struct interp_build *b,
 	}
 	write_tables(b, &h, base);
 	if (interp_program_map(&p, base, h.bytes) == 0 &&
-	    interp_limits_write(&l, &p, segs,
-				(void *)(base + h.bends_at)) < 0) {
+	    interp_limits_write(&l, &p, segs) < 0) {
 		if (!b->o.memory)
 			free(base);
 		return NULL;

@@ -52,14 +52,11 @@ struct interp_straight interp_axes_straight(const struct interp_axes *x,
  */
 void interp_axes_overlook(double *way, double pulse_mm);
 
-/* No bend takes more than that of what the axes can do along the path: the rest
- * is there to speed up and to brake. */
-#define INTERP_AXES_KEPT	0.9
-
 /**
  * interp_axes_mm_s() - the greatest speed at a place, at which the axes leave
- * @kept for going along, or most of what they can do.
+ * @kept for going along.
  *
+ * @kept: less than what they can do along a path that does not bend.
  * @ret_left: what they leave at that speed, or slower, to either side.  It is
  *	      no less than @kept.
  */

@@ -10,7 +10,6 @@
  */
 #include "speed/looks.h"
 #include "speed/pass.h"
-#include "speed/sections.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -21,9 +20,6 @@
 
 /* Where stands may pay is found with so much of what the axes can do. */
 #define PLAIN		0.5
-
-/* All stands together save so much: a jump has to stand there, too. */
-#define WORTH		0.97
 
 /* From what is best for a way of many bends to that for one with few. */
 static const struct interp_straight shares[] = {
@@ -158,13 +154,11 @@ static struct interp_straight kept_of(const struct choice *k, int share)
 	};
 }
 
-/* By itself, and at F: a cut at F has the acceleration that is left. */
 static double part_s(const struct limits *w, uint32_t from, uint32_t to,
 		     const struct interp_straight *kept)
 {
 	write_segs(w, from, to, kept);
-	return pass_moves_s(&w->pass, from, to, false, w->v2) +
-	       pass_moves_s(&w->pass, from, to, true, w->v2);
+	return pass_moves_s(&w->pass, from, to, w->v2, true);
 }
 
 static double time_s(const struct limits *w, const struct choice *k, int share)
@@ -237,7 +231,7 @@ static void choose_all(const struct limits *w)
 
 /* -- Stands ---------------------------------------------------------------- */
 
-/* Ceilings by what is kept of each segment alone; what is left is plain. */
+/* Ceilings by what is kept of each segment alone. */
 static void write_ceilings(const struct limits *w)
 {
 	for (uint32_t i = 1; i < w->pass.end; i++) {
@@ -246,61 +240,20 @@ static void write_ceilings(const struct limits *w)
 			PLAIN * (double)of->a_mm_s2,
 			PLAIN * (double)of->j_mm_s3
 		};
-		struct interp_seg *s = &w->pass.segs[i];
 
 		if (bends(of))
 			write_segs(w, i, i + 1, &kept);
-		if (of->n == 0)
-			continue;
-		s->a_mm_s2 = (float)kept.a_mm_s2;
-		s->j_mm_s3 = (float)kept.j_mm_s3;
 	}
 }
 
-/* Do some segments allow so much more than others that a stand between them may
- * pay? */
-static bool differ(const struct limits *w)
-{
-	struct interp_straight least = { INFINITY, INFINITY }, most = { 0, 0 };
-
-	for (uint32_t i = 1; i < w->pass.end; i++) {
-		const struct looks *of = &w->looks.of[i];
-
-		if (of->n == 0)
-			continue;
-		least.a_mm_s2 = smaller(least.a_mm_s2, (double)of->a_mm_s2);
-		least.j_mm_s3 = smaller(least.j_mm_s3, (double)of->j_mm_s3);
-		most.a_mm_s2 = larger(most.a_mm_s2, (double)of->a_mm_s2);
-		most.j_mm_s3 = larger(most.j_mm_s3, (double)of->j_mm_s3);
-	}
-	return most.a_mm_s2 >= PASS_SIDE * least.a_mm_s2 ||
-	       most.j_mm_s3 >= PASS_SIDE * least.j_mm_s3;
-}
-
-static double all_s(const struct limits *w)
-{
-	return pass_moves_s(&w->pass, 0, w->pass.end, false, w->v2);
-}
-
-/* All that pay one by one, or none. */
 static int find_stands(struct limits *w)
 {
-	double one_s;
-	int err;
+	const uint32_t sides = pass_sides(&w->pass);
 
-	if (!differ(w))
+	if (sides == 1)
 		return 0;
 	write_ceilings(w);
-	one_s = all_s(w);
-	err = pass_stands(&w->pass);
-	if (all_s(w) >= WORTH * one_s)
-		for (uint32_t i = 1; i < w->pass.end; i++)
-			pass_set_stand(&w->pass, i, false);
-	for (uint32_t i = 1; i < w->pass.end; i++) {
-		w->pass.segs[i].a_mm_s2 = w->looks.of[i].a_mm_s2;
-		w->pass.segs[i].j_mm_s3 = w->looks.of[i].j_mm_s3;
-	}
-	return err;
+	return pass_join(&w->pass, sides, w->v2);
 }
 
 static int write_all(struct limits *w)
@@ -318,12 +271,10 @@ static int write_all(struct limits *w)
 }
 
 int interp_limits_write(const struct interp_limits *l,
-			const struct interp_program *p, struct interp_seg *segs,
-			struct interp_bends *bends)
+			const struct interp_program *p, struct interp_seg *segs)
 {
 	struct limits w = {
-		.pass = { .p = p, .segs = segs, .end = p->head->nsegs - 1,
-			  .short_mm = SECTIONS_SHORT * l->corner_mm },
+		.pass = { .p = p, .segs = segs, .end = p->head->nsegs - 1 },
 		.points_per_s = l->points_per_s,
 		.v2 = malloc(p->head->nsegs * sizeof(float)),
 	};
@@ -333,8 +284,6 @@ int interp_limits_write(const struct interp_limits *l,
 			      &w.pass.travel_j_mm_s3);
 	if (err == 0)
 		err = write_all(&w);
-	if (err == 0)
-		looks_bends(&w.looks, bends);
 	looks_free(&w.looks);
 	free(w.v2);
 	return err;

@@ -49,7 +49,4 @@ void looks_free(struct look_all *k);
 void looks_way(const struct look_all *k, size_t i,
 	       double ret[INTERP_NAXES * INTERP_AXES_WAY]);
 
-/** looks_bends() - fill @bends, those of @k->p. */
-void looks_bends(const struct look_all *k, struct interp_bends *bends);
-
 #endif /* SPEED_LOOKS_H */

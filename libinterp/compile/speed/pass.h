@@ -16,7 +16,6 @@ struct pass {
 	const struct interp_program *p;
 	struct interp_seg *segs;	/* of it, writable */
 	uint32_t end;			/* the last segment */
-	double short_mm;		/* shorter lines stand for a curve */
 	double travel_a_mm_s2, travel_j_mm_s3;	/* of a positioning */
 };
 
@@ -28,30 +27,30 @@ static inline float pass_least(float a, float b)
 /** pass_levels() - one behind the other, what is nearly alike becomes alike. */
 void pass_levels(struct pass *w);
 
-/* A side of a program ends where the acceleration or the jerk that is allowed
- * becomes so many times as much, or so small a part. */
-#define PASS_SIDE	2
-
-/* A node is slow if it is passed no faster than this share of what its sides
- * come to. */
-#define PASS_SLOW	0.5
+/**
+ * pass_sides() - flag a stand between any two sides of a program, of which one
+ * allows much less than the other.
+ *
+ * Return: how many sides it has.
+ */
+uint32_t pass_sides(struct pass *w);
 
 /**
- * pass_stands() - flag the nodes at which a move stands, because the axes allow
- * much less on one side.
+ * pass_join() - take the stands away that save no time.
  *
+ * @sides: what pass_sides() returned.  @v2: room for a number of each segment.
  * Return: 0, -ENOMEM.
  */
-int pass_stands(struct pass *w);
+int pass_join(struct pass *w, uint32_t sides, float *v2);
 
 /**
  * pass_moves_s() - the time of segments @from up to, but not with, @to, as
- * moves from stand to stand.
+ * moves from stand to stand: once as fast as can be, and once at F.
  *
- * @fed: no faster than F.  @v2: room for @to numbers
+ * @v2: room for @to numbers.  @one: as one move, whatever stands are in it.
  */
 double pass_moves_s(const struct pass *w, uint32_t from, uint32_t to,
-		    bool fed, float *v2);
+		    float *v2, bool one);
 
 /** pass_set_stand() - at the end of segment @i; false: take it away. */
 static inline void pass_set_stand(struct pass *w, uint32_t i, bool stands)

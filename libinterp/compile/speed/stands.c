@@ -9,9 +9,9 @@
  * So a program is cut into moves, with a stand between them, where that takes
  * less time.
  *
- * A program has sides.  A side ends at a slow node, and where what is allowed
- * becomes half or twice as much.  At first a move stands between any two sides.
- * Then the stands go that save no time.
+ * A program has sides.  A side ends where what is allowed becomes half or twice
+ * as much.  At first a move stands between any two sides.  The stands in each
+ * half of the program are judged first, then the one between the halves.
  */
 #include "speed/pass.h"
 
@@ -20,6 +20,10 @@
 #include <stdlib.h>
 
 /* -- Sides ----------------------------------------------------------------- */
+
+/* A side ends where it would allow so many times as much in one place as in
+ * another. */
+#define SIDE		2
 
 /* What the segments of a side allow; only what a positioning may use counts. */
 struct side {
@@ -45,157 +49,78 @@ static struct side longer(const struct pass *w, const struct side *k,
 
 static bool is_one_side(const struct side *k)
 {
-	return k->a_most <= PASS_SIDE * k->a_least &&
-	       k->j_most <= PASS_SIDE * k->j_least;
+	return k->a_most <= SIDE * k->a_least && k->j_most <= SIDE * k->j_least;
 }
 
-/* What a node is slow beside: the ceiling of a segment, but no more than a
- * short one comes to from its other node. */
-static double beside_mm_s(const struct pass *w, uint32_t i, double other_mm_s)
-{
-	const struct interp_seg *s = &w->segs[i];
-	const double feed = (double)s->feed_max_mm_s;
-
-	return s->kind == INTERP_LINE && s->length_mm < w->short_mm ?
-	       smaller(feed, other_mm_s +
-			     sqrt(w->travel_a_mm_s2 * s->length_mm)) : feed;
-}
-
-/* Is the node between segments @last and @i slow?  A bend of short lines is as
- * slow all the way. */
-static bool is_slow(const struct pass *w, uint32_t last, uint32_t i)
-{
-	const struct interp_seg *s = w->segs;
-	const double node = (double)s[last].node_mm_s;
-	const double before = last > 0 ? (double)s[last - 1].node_mm_s : 0;
-
-	return node < PASS_SLOW * beside_mm_s(w, last, before) &&
-	       node < PASS_SLOW * beside_mm_s(w, i, (double)s[i].node_mm_s);
-}
-
-static void part_sides(struct pass *w, uint32_t end)
+uint32_t pass_sides(struct pass *w)
 {
 	struct side is = no_side;
+	uint32_t n = 1;
 
-	for (uint32_t i = 0; i < end; i++) {
+	for (uint32_t i = 0; i < w->end; i++) {
 		struct side on;
 
 		if (w->segs[i].kind >= INTERP_BEGIN)
 			continue;
 		on = longer(w, &is, i);
-		if (is.last < UINT32_MAX &&
-		    (!is_one_side(&on) || is_slow(w, is.last, i))) {
+		if (!is_one_side(&on)) {
 			pass_set_stand(w, is.last, true);
 			on = longer(w, &no_side, i);
+			n++;
 		}
 		is = on;
 	}
+	return n;
 }
 
-/* -- Moves ----------------------------------------------------------------- */
+/* -- Stands ---------------------------------------------------------------- */
 
-/* Behind the next stand. */
-static uint32_t behind_stand(const struct pass *w, uint32_t at, uint32_t to)
-{
-	while (at < to && !(w->segs[at].flags & INTERP_SEG_STAND))
-		at++;
-	return at < to ? at + 1 : to;
-}
-
-/* Stands before segment @to.  What is known holds as long as the moves beside
- * it stay. */
-struct stands {
+struct joining {
 	struct pass *pass;
-	uint32_t to;
+	const uint32_t *side;		/* the first segment of each, and the
+					 * end */
 	float *v2;			/* room of pass_moves_s() */
-	float *share;			/* of each stand, by the segment before
-					 * it; UNKNOWN */
-	float *alone_s;			/* of each move, by its last one */
 };
 
-#define UNKNOWN		0.0f
-
-/* The move from @from to @to. */
-static double alone_s(const struct stands *k, uint32_t from, uint32_t to)
+/* Is one move from @from to @to as quick as the two that it has now? */
+static bool is_one(const struct joining *k, uint32_t from, uint32_t to)
 {
-	float *s = &k->alone_s[to - 1];
-
-	if (*s == UNKNOWN)
-		*s = (float)pass_moves_s(k->pass, from, to, false, k->v2);
-	return (double)*s;
+	return pass_moves_s(k->pass, from, to, k->v2, true) <=
+	       pass_moves_s(k->pass, from, to, k->v2, false);
 }
 
-/* A stand is in the node before @mid.  Return: the share of the time that the
- * move from @from to @to takes with it. */
-static double stand_share(const struct stands *k, uint32_t from, uint32_t mid,
-			  uint32_t to)
+/* Sides @lo up to, but not with, @hi. */
+static void join_sides(const struct joining *k, uint32_t lo, uint32_t hi)
 {
-	const double apart = alone_s(k, from, mid) + alone_s(k, mid, to);
-	double one;
+	const struct interp_seg *s = k->pass->segs;
+	const uint32_t half = lo + (hi - lo) / 2, mid = k->side[half];
+	uint32_t from = mid - 1, to = mid + 1;
 
-	pass_set_stand(k->pass, mid - 1, false);
-	one = pass_moves_s(k->pass, from, to, false, k->v2);
-	pass_set_stand(k->pass, mid - 1, true);
-	return apart / one;
+	if (hi - lo < 2)
+		return;
+	join_sides(k, lo, half);
+	join_sides(k, half, hi);
+	while (from > k->side[lo] && !(s[from - 1].flags & INTERP_SEG_STAND))
+		from--;
+	while (to < k->side[hi] && !(s[to - 1].flags & INTERP_SEG_STAND))
+		to++;
+	if (is_one(k, from, to))
+		pass_set_stand(k->pass, mid - 1, false);
 }
 
-static void find_shares(const struct stands *k)
+int pass_join(struct pass *w, uint32_t sides, float *v2)
 {
-	uint32_t from = 0, mid = behind_stand(k->pass, from, k->to);
+	uint32_t *side = malloc((sides + 1) * sizeof(*side)), n = 0;
+	const struct joining k = { w, side, v2 };
 
-	while (mid < k->to) {
-		const uint32_t end = behind_stand(k->pass, mid, k->to);
-
-		if (k->share[mid - 1] == UNKNOWN)
-			k->share[mid - 1] = (float)stand_share(k, from, mid,
-							       end);
-		from = mid;
-		mid = end;
-	}
-}
-
-/* Take the stands away that save nothing; but not two beside each other, of
- * which the one that saves less goes: what the other saves depends on it.
- * Return: did any go? */
-static bool join_moves(const struct stands *k)
-{
-	float *share = k->share, before = 0, is, next;
-	uint32_t prior = 0, at = behind_stand(k->pass, 0, k->to);
-	bool any = false, goes = false;
-
-	for (is = at < k->to ? share[at - 1] : 0; at < k->to; is = next) {
-		const uint32_t end = behind_stand(k->pass, at, k->to);
-		const bool went = goes;
-
-		next = end < k->to ? share[end - 1] : 0;
-		goes = !went && is >= 1 && is >= next && is >= before;
-		if (goes) {
-			pass_set_stand(k->pass, at - 1, false);
-			if (prior > 0)
-				share[prior - 1] = UNKNOWN;
-			share[end - 1] = UNKNOWN;
-			k->alone_s[end - 1] = UNKNOWN;
-			any = true;
-		}
-		before = went ? 0 : is;
-		prior = at;
-		at = end;
-	}
-	return any;
-}
-
-int pass_stands(struct pass *w)
-{
-	const size_t n = w->end;
-	float *room = calloc(n, 3 * sizeof(*room));
-	const struct stands k = { w, w->end, room, room + n, room + 2 * n };
-
-	if (!room)
+	if (!side)
 		return -ENOMEM;
-	part_sides(w, w->end);
-	do
-		find_shares(&k);
-	while (join_moves(&k));
-	free(room);
+	side[n++] = 0;
+	for (uint32_t i = 1; i < w->end; i++)
+		if (w->segs[i - 1].flags & INTERP_SEG_STAND)
+			side[n++] = i;
+	side[n] = w->end;
+	join_sides(&k, 0, n);
+	free(side);
 	return 0;
 }

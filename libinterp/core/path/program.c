@@ -89,7 +89,6 @@ int interp_program_map(struct interp_program *p, const void *block,
 	    !table_ok(h, h->pieces_at, h->npieces, sizeof(*p->pieces)) ||
 	    !table_ok(h, h->stops_at, h->nstops, sizeof(*p->stops)) ||
 	    !table_ok(h, h->numbers_at, h->nnumbers, sizeof(*p->numbers)) ||
-	    !table_ok(h, h->bends_at, h->nbends, sizeof(*p->bends)) ||
 	    !table_ok(h, h->origins_at, h->norigins, sizeof(*p->origins)))
 		return -EBADMSG;
 
@@ -106,7 +105,6 @@ int interp_program_map(struct interp_program *p, const void *block,
 	p->pieces = (const void *)(base + h->pieces_at);
 	p->stops = (const void *)(base + h->stops_at);
 	p->numbers = (const void *)(base + h->numbers_at);
-	p->bends = (const void *)(base + h->bends_at);
 	p->origins = (const void *)(base + h->origins_at);
 	for (uint32_t i = 0; i < h->nconds; i++) {
 		if (!interp_tech_ok(&p->conds[i].tech))

@@ -57,12 +57,6 @@
 #define INTERP_TOLERANCE_MM	0.001
 #define INTERP_ROTARY_MM	57.3	/* there 0.001 mm is 0.001 degrees */
 
-/*
- * Of the jerk of an axis, what may speed up on a bend.  It is counted as square
- * to the jerk of the bend itself and to that along the path.
- */
-#define INTERP_ARC_JERK_BOTH	0.66
-
 struct interp_limits {
 	const struct interp_machine *machine;
 	double corner_mm;		/* > 0 */
@@ -76,12 +70,12 @@ struct interp_limits {
  * interp_limits_write() - fill node_mm_s, feed_max_mm_s, a_mm_s2, j_mm_s3,
  * slower_*, softer_* and INTERP_SEG_STAND of @segs.
  *
- * @segs, @bends: the segments of @p, and its bends, which it fills; writable.
+ * @segs: the segments of @p; writable.
  * Return: 0, -ENOMEM.  Any thread, but not for the cycle.
  */
 int interp_limits_write(const struct interp_limits *l,
-			const struct interp_program *p, struct interp_seg *segs,
-			struct interp_bends *bends);
+			const struct interp_program *p,
+			struct interp_seg *segs);
 
 /**
  * interp_limits_into() - how fast segment @i may be entered, going forward:

@@ -11,7 +11,7 @@
  *	head | segments[nsegs] | nodes[nsegs + 1][naxes] | arcs[narcs]
  *	     | conditions[nconds] | escapes[nescapes] | couples[ncouples]
  *	     | bits[nbits] | curves[ncurves] | pieces[npieces]
- *	     | stops[nstops] | numbers[nnumbers] | bends[nbends]
+ *	     | stops[nstops] | numbers[nnumbers]
  *	     | runs[nruns] | origins[norigins]
  *
  * Bits are strings of whole words, with one bit for each pulse.  A line by
@@ -52,7 +52,7 @@
 #define INTERP_FAR_BESIDE	1e4
 
 #define INTERP_PROGRAM_MAGIC	"edmprog"	/* 8 bytes with its NUL */
-#define INTERP_PROGRAM_VERSION	18
+#define INTERP_PROGRAM_VERSION	19
 
 /*
  * How three and more axes make a line when they move one at a time.
@@ -237,27 +237,6 @@ struct interp_piece {
 	uint64_t stops_at;
 };
 
-/* So many segments have their bends in one. */
-#define INTERP_BENDS_SEGS	16
-
-/*
- * What axes that bend, beside the path or with it, leave for going along a run
- * of segments: the slower it goes, the more (interp/bends.h).  bends[k] is that
- * of the segments from INTERP_BENDS_SEGS * k on.  Without bends there are none,
- * or all is 0.
- */
-struct interp_bends {
-	float a_mm_s2, j_mm_s3;		/* along the path, as if nothing bent */
-	float bent_a_mm_s2, bent_j_mm_s3;	/* the same by the axes that
-						 * bend alone */
-	/* To follow the bends takes, as shares of what these axes can do: */
-	float by_v2, by_v3;		/* of acceleration and jerk, per v^2
-					 * and v^3 */
-	float by_va;			/* of jerk, per speed and acceleration
-					 * along the path */
-	float pad;
-};
-
 /* A technology condition called by the program, such as C120 or E001. */
 struct interp_cond {
 	uint32_t number;
@@ -361,7 +340,6 @@ struct interp_program_head {
 	uint64_t nescapes, escapes_at;	/* at least one: along the path */
 	uint64_t ncurves, curves_at, npieces, pieces_at;
 	uint64_t nstops, stops_at, nnumbers, numbers_at;
-	uint64_t nbends, bends_at;	/* 0, or enough for all segments */
 	uint64_t norigins, origins_at;	/* by seg; 0: nobody said */
 	double pulse_mm[INTERP_NAXES];
 	int32_t start_pulses[INTERP_NAXES];	/* of every axis, at node 0 */
@@ -388,7 +366,6 @@ struct interp_program {
 	const struct interp_piece *pieces;
 	const struct interp_nurbs_stop *stops;
 	const double *numbers;
-	const struct interp_bends *bends;
 	const struct interp_origin *origins;
 };
 
