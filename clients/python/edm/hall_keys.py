@@ -64,11 +64,9 @@ def permissions(name: str, office: bool, begin: datetime.datetime,
                 end: datetime.datetime) -> str:
     """A machine tells its state and answers; an office reads, and offers."""
     own = "*" if office else name
-    mine, theirs = ("EDM_JobOffer",), ("EDM_JobAnswer",)
-    if not office:
-        mine, theirs = theirs, mine
-    if not office:
-        mine += STATES
+    offers, answers = ("EDM_JobOffer",), ("EDM_JobAnswer",)
+    mine: tuple[str, ...] = offers if office else answers + STATES
+    theirs = answers if office else offers
     rules = [f"<publish>{_topics(mine, own)}</publish>",
              f"<subscribe>{_topics(theirs, own)}</subscribe>",
              f"<subscribe>{_topics(STATES, '*')}</subscribe>"]
