@@ -115,6 +115,7 @@ def test_the_python_package_needs_no_network_either(lonely):
     code = ("import edm, sys; m = edm.Client(sys.argv[1], timeout=20); "
             "print(m.submit(b'G1 X1 F600\\nM30\\n', 'a.ngc').id, "
             "m.status().state)")
+    until(lambda: lonely.ctl("status").returncode == 0)
     p = subprocess.run(
         [*ALONE, sys.executable, "-c", code, lonely.name],
         capture_output=True, text=True, timeout=120,
