@@ -337,10 +337,10 @@ $(B)/edmd-jobs: $(call obj,$(JOBS) $(VALUES) $(LOGGER)) $(SIGN_O) $(SHM_O) $(VIR
 $(B)/edmctl: $(call obj,$(CTL) $(CLIENT) $(SIGN) $(PLOT)) $(LINES_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(MODEL_A) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -llcm -lsodium -ljansson -lz -lncursesw -ltinfo $(LIBGPIOD) -lm)
 
-$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c post.c relay.c reports.c watch.c topic.c tool.c) $(CLIENT)) $(SIGN_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(DDS_O) $(CORE_A) $(COMMON_A)
+$(B)/edm-dds: $(call obj,$(addprefix clients/dds/,edm-dds.c post.c relay.c reports.c scope.c watch.c topic.c tool.c) $(CLIENT)) $(SIGN_O) $(SHM_O) $(CONFIG_O) $(LCM_O) $(DDS_O) $(CORE_A) $(COMMON_A)
 	$(call link,-lddsc -linih -llcm -lsodium -ljansson -lm)
 
-$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c dispatch.c hall.c ledger.c post.c sink.c table.c topic.c tool.c) $(CLIENT)) $(SIGN_O) $(LCM_O) $(DDS_O) $(COMMON_A)
+$(B)/edm-fleet: $(call obj,$(addprefix clients/dds/,edm-fleet.c dispatch.c hall.c ledger.c post.c scope_record.c sink.c table.c topic.c tool.c) $(CLIENT)) $(SIGN_O) $(SHM_O) $(LCM_O) $(DDS_O) $(COMMON_A)
 	$(call link,-lddsc -ljansson -lsqlite3 -llcm -lsodium -lm)
 
 $(B)/edm-panel: $(call obj,$(PANEL_C) $(VALUES) $(CLIENT)) $(SIGN_O) $(SHM_O) $(COMPILING_O) $(CONFIG_O) $(LCM_O) $(COMPILE_A) $(CORE_A) $(COMMON_A)

@@ -10,6 +10,7 @@
 #include "plot.h"
 #include "shm.h"
 #include "output.h"
+#include "shm_csv.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -85,9 +86,7 @@ static int open_csv(const struct ctl *c, struct recording *r)
 	r->f = fopen(c->arg, "we");
 	if (!r->f)
 		return refuse(c, c->arg, strerror(errno), EX_CANTCREAT);
-	fputs("t_s,line,s_mm,feed_mm_s,gap_v,state,X,Y,Z,A,B,C,U,V,"
-	      "X_actual,Y_actual,Z_actual,A_actual,B_actual,C_actual,"
-	      "U_actual,V_actual\n", r->f);
+	shm_csv_head(r->f);
 	return 0;
 }
 
@@ -109,13 +108,7 @@ static void write_row(struct recording *r, const struct shm_trace *t)
 	double t_s = (double)(t->cycle - r->first_cycle) *
 		     (double)r->about.period_ns * 1e-9;
 
-	fprintf(r->f, "%.6f,%u,%.6f,%.6f,%.2f,%s", t_s, t->line, t->place_mm,
-		t->feed_mm_s, t->gap_v, shm_state_name(t->state));
-	for (int i = 0; i < SHM_NAXES; i++)
-		fprintf(r->f, ",%.10g", t->pos[i] * r->about.pulse_mm[i]);
-	for (int i = 0; i < SHM_NAXES; i++)
-		fprintf(r->f, ",%.10g", t->actual[i] * r->about.pulse_mm[i]);
-	fputc('\n', r->f);
+	shm_csv_row(r->f, t, t_s, r->about.pulse_mm);
 	r->written++;
 	if (r->plot)
 		plot_row(r, t, t_s);

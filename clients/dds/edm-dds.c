@@ -12,6 +12,7 @@
 #include "names.h"
 #include "relay.h"
 #include "reports.h"
+#include "scope.h"
 #include "tool.h"
 #include "topic.h"
 #include "watch.h"
@@ -43,6 +44,7 @@ struct bridge {
 	uint32_t known;
 	struct reports reports;
 	struct relay relay;
+	struct scope scope;
 	int epoll;
 	char host[sizeof(((edm_MachineState *)0)->host)];
 	char said[sizeof(((edm_MachineState *)0)->state)];
@@ -148,7 +150,10 @@ static int bridge_open(struct bridge *b, const struct options *o)
 		return b->others < 0 ? b->others : b->writer;
 	if (o->once)
 		return 0;
-	err = relay_open(&b->relay, b->participant, o->machine, b->epoll);
+	err = scope_open(&b->scope, part);
+	if (err == 0)
+		err = relay_open(&b->relay, b->participant, o->machine,
+				 b->epoll);
 	return err < 0 ? err : reports_open(&b->reports, part, o->machine,
 					    o->key);
 }
@@ -242,6 +247,7 @@ static bool wait_until(struct bridge *b, int64_t until_ns)
 	do {
 		relay_step(&b->relay);
 		reports_step(&b->reports);
+		scope_step(&b->scope, &b->watch);
 		left = until_ns - clock_ns(CLOCK_MONOTONIC);
 		stop = tool_wait(b->epoll, left < 0 ? 0 : left < STEP_NS ?
 				 left : STEP_NS);

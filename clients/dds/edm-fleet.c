@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * edm-fleet - lists the machines that are heard over DDS, one line each; keeps
- * what they did, and tells it; gives a job to one of them
+ * what they did, and tells it; gives a job to one of them; records the cycles
+ * of one
  *
  * For each picture what has come is taken: hall.c keeps the last sample of each
  * machine, and whether its writer is still there.
@@ -11,6 +12,7 @@
 #include "hall.h"
 #include "ledger.h"
 #include "names.h"
+#include "scope.h"
 #include "sink.h"
 #include "standard.h"
 #include "submission.h"
@@ -104,7 +106,7 @@ static const struct cmdline_row rows[] = {
 	{ "week", NULL, CMDLINE_FLAG, AT(week), .help =
 	  "report, alarms: of today and the six days before" },
 	{ "machine", "NAME", CMDLINE_WORD, AT(machine), .help =
-	  "submit: to this one" },
+	  "submit: to this one; scope: of this one" },
 	{ "any", NULL, CMDLINE_FLAG, AT(any), .help =
 	  "submit: to the first idle one that takes it" },
 	{ "hold", NULL, CMDLINE_FLAG, AT(hold), .help =
@@ -132,6 +134,7 @@ static const struct cmdline table = {
 	"  report          hours, jobs and why machines stood, by machine\n"
 	"  alarms          alarms of all machines, newest first\n"
 	"  submit FILE     give a job to --machine NAME or to --any\n"
+	"  scope FILE      write each cycle of --machine NAME to a CSV\n"
 	"\n",
 	.tail =
 	"\n"
@@ -379,16 +382,37 @@ static int run_submit(struct fleet *f, const struct options *o,
 	return err;
 }
 
+static int run_scope(struct fleet *f, const struct options *o, const char *path)
+{
+	int err;
+
+	if (!path || !o->machine)
+		return cmdline_refuse("edm-fleet", "scope", path ? path : "",
+				      "scope FILE --machine NAME");
+	if (!names_machine_ok(o->machine))
+		return cmdline_refuse("edm-fleet", "--machine", o->machine,
+				      NAMES_MACHINE_WANTED);
+	err = fleet_open(f, o->domain);
+	if (err == 0)
+		err = scope_record(f->participant, f->epoll, o->machine, path);
+	if (f->participant > 0)
+		dds_delete(f->participant);
+	hall_close(&f->hall);
+	return err < 0 ? tool_fail(table.program, o->domain, err) : err;
+}
+
 static int run(struct fleet *f, const struct options *o, char **arg)
 {
 	const char *command = arg[0];
 
 	if (command && !strcmp(command, "submit"))
 		return run_submit(f, o, arg[1]);
+	if (command && !strcmp(command, "scope"))
+		return run_scope(f, o, arg[1]);
 	if (command && arg[1])
 		return cmdline_refuse("edm-fleet", command, arg[1],
-				      "nothing after it; only submit takes a "
-				      "FILE");
+				      "nothing after it; submit and scope take "
+				      "a FILE");
 	if (!command)
 		return run_list(f, o);
 	if (!strcmp(command, "record"))
@@ -398,7 +422,8 @@ static int run(struct fleet *f, const struct options *o, char **arg)
 	if (!strcmp(command, "alarms"))
 		return run_told(f, o, ledger_print_alarms);
 	return cmdline_refuse("edm-fleet", "command", command,
-			      "record, report, alarms, submit FILE, or nothing");
+			      "record, report, alarms, submit FILE, scope FILE, "
+			      "or nothing");
 }
 
 int main(int argc, char **argv)

@@ -24,6 +24,9 @@ static const struct topic_row {
 			   DDS_DURABILITY_TRANSIENT_LOCAL, 1, 1 },
 	[TOPIC_ALARM] = { "EDM_Alarm", &edm_Alarm_desc,
 			  DDS_DURABILITY_TRANSIENT_LOCAL, 1, 1 },
+	/* Who is slow misses some. */
+	[TOPIC_SCOPE] = { "EDM_Scope", &edm_Scope_desc,
+			  DDS_DURABILITY_VOLATILE, 32, 128 },
 	/* Good for a second; who sent it says it again: post.h. */
 	[TOPIC_OFFER] = { "EDM_JobOffer", &edm_SignedPacket_desc,
 			  DDS_DURABILITY_VOLATILE, 32, 128 },

@@ -16,8 +16,8 @@
 #include <stdbool.h>
 
 enum topic {
-	TOPIC_STATE, TOPIC_REPORT, TOPIC_ALARM, TOPIC_OFFER, TOPIC_ANSWER,
-	TOPIC_NTOPICS
+	TOPIC_STATE, TOPIC_REPORT, TOPIC_ALARM, TOPIC_SCOPE, TOPIC_OFFER,
+	TOPIC_ANSWER, TOPIC_NTOPICS
 };
 
 /* What a machine tells is in a partition with its name. */

@@ -172,7 +172,7 @@ def test_a_refusal_of_a_named_machine_names_line_and_file(cell, tmp_path):
     (["submit", "x", "--any", "--hold", "--start"], 64, "one of them"),
     (["submit", "x", "--machine", "a b"], 64, "1 to 31"),
     (["submit", "/nonexistent", "--any"], 66, "a file of NC code"),
-    (["record", "x"], 64, "only submit"),
+    (["record", "x"], 64, "submit and scope take"),
 ])
 def test_what_cannot_be_submitted_is_refused(args, code, said):
     p = edm_fleet(*args)

@@ -22,7 +22,7 @@ from typing import Any
 NAME = re.compile(r"[A-Za-z0-9_-]{1,31}\Z")
 HOLDS = ("ca.pem", "identity.pem", "identity.key", "governance.p7s",
          "permissions.p7s", "dds.xml")
-STATES = ("EDM_MachineState", "EDM_JobReport", "EDM_Alarm")
+STATES = ("EDM_MachineState", "EDM_JobReport", "EDM_Alarm", "EDM_Scope")
 HEAD = ('<?xml version="1.0" encoding="UTF-8"?>\n<dds xmlns:xsi='
         '"http://www.w3.org/2001/XMLSchema-instance" '
         'xsi:noNamespaceSchemaLocation="http://www.omg.org/spec/DDS-SECURITY/'
