@@ -108,11 +108,11 @@ enum cycle_restored cycle_restore(struct cycle *c,
 	 * cut. */
 	if (!conditions_restore(c, past->sets, past->nsets))
 		return RESTORE_OTHER_VALUES;
-	asking_restore(c);
 	c->out.pump = past->pump;
 	restore_actions(c);
 	restore_mcode(c, past);
 	c->stand = past->stand;
+	asking_restore(c);
 	stand_begin(c, STAND_RESTART, 0);
 	if (isfinite(past->back_mm))
 		c->back_mm = fmax(c->back_mm, past->back_mm);

@@ -701,6 +701,38 @@ static void a_person_gives_back_what_nobody_knows(void **state)
 	rig_free(&r);
 }
 
+/* It is moved back to a cut that gives what a person sets just now; edmd may be
+ * killed there. */
+static void what_a_person_sets_is_not_asked_for_before_the_start(void **state)
+{
+	struct cycle_config k = limited_config(true);
+	const double *on_us;
+	struct rig r;
+
+	(void)state;
+	k.asking.field[INTERP_TECH_ON_US].measured = true;
+	rig_kept(&r, &k);
+	on_us = &r.out.pulse[INTERP_TECH_ON_US];
+	until_the_third_cut(&r);
+	assert_int_equal(tell_mm(&r, CYCLE_RETRACT, 0.05), ANSWER_DONE);
+	for (int i = 0; i < 1000; i++) {
+		kept_period(&r);
+		assert_true(isnan(*on_us));
+		if (i == 500)
+			asking_restore(&r.c);
+	}
+	assert_int_equal(r.out.cond_number, 1);
+	assert_int_equal(tell(&r, CYCLE_CONFIRM), ANSWER_DONE);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	while (!r.out.power)
+		kept_period(&r);
+	assert_int_equal(cond_cut(&r.c.cursor)->number, 1);
+	assert_true(*on_us == 20);
+	until_the_third_cut(&r);
+	assert_int_equal(r.c.asking.stands, 1u << INTERP_TECH_ON_US);
+	rig_free(&r);
+}
+
 /* One that keeps it, and did not tell what it had before. */
 static void what_only_a_person_can_give_back_is_asked_for(void **state)
 {
@@ -888,6 +920,7 @@ int main(void)
 		cmocka_unit_test(what_was_tried_is_given_back_with_a_job_and_without),
 		cmocka_unit_test(what_nobody_asks_for_any_more_is_as_before),
 		cmocka_unit_test(a_person_gives_back_what_nobody_knows),
+		cmocka_unit_test(what_a_person_sets_is_not_asked_for_before_the_start),
 		cmocka_unit_test(what_only_a_person_can_give_back_is_asked_for),
 		cmocka_unit_test(what_is_leased_is_given_back_when_nobody_renews_it),
 		cmocka_unit_test(what_is_leased_covers_what_stays),

@@ -34,13 +34,20 @@ static bool is_lent(const struct asking *a, int i)
 	return a->lent >> i & 1;
 }
 
+/* A person sets it, or may have set it, until the job is started again:
+ * wherever the machine is moved meanwhile. */
+static bool is_left(const struct cycle *c, int i)
+{
+	return c->asking.stands >> i & 1 && c->config.asking.field[i].stays;
+}
+
 /* What the place asks for, or who tries the generator, or it was asked for and
  * nobody asks any more. */
 static double asked_for(const struct cycle *c, int i)
 {
 	const struct asking *a = &c->asking;
 
-	return is_tried(a, i) ? tried(a, i) :
+	return is_tried(a, i) ? tried(a, i) : is_left(c, i) ? (double)NAN :
 	       isnan(c->out.pulse[i]) && is_lent(a, i) ? a->before[i] :
 							 c->out.pulse[i];
 }
@@ -225,9 +232,10 @@ static bool is_dark(const struct cycle *c)
 static double against_arcs(const struct cycle *c, double off_us)
 {
 	const double longer_us = asking_off_us(c, arcing_off_us(c));
+	const bool of_others = is_tried(&c->asking, INTERP_TECH_OFF_US) ||
+			       is_left(c, INTERP_TECH_OFF_US);
 
-	return isnan(longer_us) || is_tried(&c->asking, INTERP_TECH_OFF_US) ?
-	       off_us : longer_us;
+	return isnan(longer_us) || of_others ? off_us : longer_us;
 }
 
 static void ask(struct cycle *c)
@@ -360,6 +368,7 @@ void asking_restore(struct cycle *c)
 	for (uint32_t k = 0; k < c->conditions.nsets; k++)
 		if (c->conditions.set[k].field < INTERP_NGENERATOR)
 			a->lent |= 1u << c->conditions.set[k].field;
+	a->stands = c->stand.why == STAND_SETTING ? c->stand.of : 0;
 }
 
 bool asking_waits(const struct cycle *c)

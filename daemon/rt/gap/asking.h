@@ -22,7 +22,8 @@
  * A generator on registers keeps the last value that it was asked for.  Where
  * nobody asks any more (a condition that does not give it, a set that was taken
  * back, the end of a trial), it is asked for the one that it told before.  If
- * it did not tell it, a person must set it before the sparks.
+ * it did not tell it, a person must set it before the sparks.  Until the start
+ * that follows, it is asked for no value of that field.
  *
  * Threads: RT-safe.
  */
