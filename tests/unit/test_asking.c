@@ -701,6 +701,31 @@ static void a_person_gives_back_what_nobody_knows(void **state)
 	rig_free(&r);
 }
 
+/* Behind a kill; the slave is silent while a person sets it. */
+static void what_a_person_has_set_is_told_before_the_sparks(void **state)
+{
+	struct cycle_config k = limited_config(true);
+	struct rig r;
+
+	(void)state;
+	rig_kept(&r, &k);
+	until_the_third_cut(&r);
+	asking_restore(&r.c);
+	for (int i = 0; i < 50; i++)
+		kept_period(&r);
+	assert_int_equal(r.c.asking.stands, 1u << INTERP_TECH_ON_US);
+	assert_int_equal(tell(&r, CYCLE_CONFIRM), ANSWER_DONE);
+	assert_int_equal(tell(&r, CYCLE_START), ANSWER_DONE);
+	for (int i = 0; i < 100; i++) {
+		step(&r, asking_waits(&r.c) ? 0 : SPARKING_V);
+		assert_false(r.out.power);
+	}
+	r.in.generator.told[INTERP_TECH_ON_US] = 7;
+	while (!r.out.power)
+		kept_period(&r);
+	rig_free(&r);
+}
+
 /* It is moved back to a cut that gives what a person sets just now; edmd may be
  * killed there. */
 static void what_a_person_sets_is_not_asked_for_before_the_start(void **state)
@@ -920,6 +945,7 @@ int main(void)
 		cmocka_unit_test(what_was_tried_is_given_back_with_a_job_and_without),
 		cmocka_unit_test(what_nobody_asks_for_any_more_is_as_before),
 		cmocka_unit_test(a_person_gives_back_what_nobody_knows),
+		cmocka_unit_test(what_a_person_has_set_is_told_before_the_sparks),
 		cmocka_unit_test(what_a_person_sets_is_not_asked_for_before_the_start),
 		cmocka_unit_test(what_only_a_person_can_give_back_is_asked_for),
 		cmocka_unit_test(what_is_leased_is_given_back_when_nobody_renews_it),

@@ -199,6 +199,8 @@ static void hear_hand(struct cycle *c)
 		else
 			a->lent &= ~(a->stands & 1u << i);
 	a->stands = 0;
+	a->needed = ++a->version;	/* it tells what it has now */
+	a->age = 0;
 }
 
 /* -- What the generator is asked for --------------------------------------- */

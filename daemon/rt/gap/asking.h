@@ -23,7 +23,8 @@
  * nobody asks any more (a condition that does not give it, a set that was taken
  * back, the end of a trial), it is asked for the one that it told before.  If
  * it did not tell it, a person must set it before the sparks.  Until the start
- * that follows, it is asked for no value of that field.
+ * that follows, it is asked for no value of that field; behind it, no sparks
+ * before it tells what it has.
  *
  * Threads: RT-safe.
  */
