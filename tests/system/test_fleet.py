@@ -14,6 +14,7 @@ import os
 import signal
 import socket
 import subprocess
+import sys
 import threading
 import time
 
@@ -505,3 +506,22 @@ def test_edm_fleet_says_that_new_machines_still_came(fleet, peer):
             time.sleep(0.1)
         assert p.returncode == 1
         assert "new ones still came" in p.stderr.read()
+
+
+def test_the_tool_of_cyclone_dds_lists_what_a_machine_tells(fleet, peer):
+    """cyclonedds ls, of PyPI's cyclonedds, knows nothing of edmd."""
+    m, _ = fleet
+    m.start()
+    m.start_dds()
+    peer.state(m, "idle")
+
+    def is_listed():
+        p = subprocess.run(
+            [sys.executable, "-m", "cyclonedds.tools.cli.main", "ls",
+             "--suppress-progress-bar", "--runtime", "3"],
+            capture_output=True, text=True, timeout=120)
+        assert p.returncode == 0, p.stderr
+        return all(f"EDM_{topic}" in p.stdout for topic in (
+            "MachineState", "JobReport", "Alarm", "Scope", "JobOffer"))
+
+    until(is_listed, 60)
