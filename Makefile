@@ -25,6 +25,7 @@
 #   make invariants what holds in every cycle, over ten million random ones
 #   make trace      when each period of build/edmd begins and ends, for perf
 #   make callgraph  draw which file of the cycle calls which
+#   make modbus-person  random jobs beside a generator on Modbus and a person
 #   make faults     the table of faults in docs/, from the one in the code
 #   make plc-files  EDS, DBC and the page of signals, from the one in the code
 #   make pictures   draw what docs/ shows, into docs/pictures/, and the run that
@@ -161,6 +162,7 @@ INC_libinterp	= $(INC_compile) $(INC_model)
 INC_plan	= -Iclients/plan -Icommon $(INC_config) $(INC_compiling)
 INC_unit	= -Itests/unit -Itests/data -Itests/experiments $(INC_virtual) $(INC_edmd) $(INC_jobs) $(INC_libinterp) -Iclients/plan -Iclients/panel -Iclients/ctl $(MODBUS_INC)
 INC_bench	= -Itests/data -Itests/experiments $(INC_edmd) $(INC_compiling) $(MODEL_H)
+INC_system	= -Idaemon/io
 INC_peer	= -Itests/data $(CORE_H) $(COMPILE_H)
 part = $(if $(filter common,$(firstword $(subst /, ,$1))),common,$(word 2,$(subst /, ,$1)))
 
@@ -330,6 +332,10 @@ $(B)/edmsim: $(call obj,$(SIM) $(PLOT)) $(VIRTUAL_O) $(COMPILING_O) $(CONFIG_O) 
 
 $(B)/edmd: $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(IO_O) $(RT_O) $(CORE_A) $(COMMON_A)
 	$(call link,-linih -lsystemd $(LIBGPIOD) -lmodbus -lpthread -lm)
+
+# For tests: the lines of a chip are bytes of a file.
+$(B)/tests/edmd-lines: $(B)/tests/system/lines_file.o $(call obj,$(EDMD)) $(LOGGER_O) $(SETUP_O) $(SHM_O) $(CONFIG_O) $(filter-out $(LINES_O),$(IO_O)) $(RT_O) $(CORE_A) $(COMMON_A)
+	$(call link,-linih -lsystemd -lmodbus -lpthread -lm)
 
 $(B)/edmd-jobs: $(call obj,$(JOBS) $(VALUES) $(LOGGER)) $(SIGN_O) $(SHM_O) $(VIRTUAL_O) $(COMPILING_O) $(CONFIG_O) $(SIM_IO_O) $(RT_O) $(LCM_O) $(INTERP_A)
 	$(call link,-linih -ljansson -llcm -lsqlite3 -lsodium -lsystemd -lm)
@@ -762,6 +768,11 @@ pictures: $(B)/edmsim $(B)/experiments/process $(B)/experiments/curves
 panel-load: all panel
 	@EDM_BUILD=$(B) tests/netns .venv/bin/python tests/bench/panel-load
 
+# A random person beside a random slave on Modbus that sparks: EDM_SECONDS, EDM_SEED.
+modbus-person: all $(B)/tests/edmd-lines
+	@EDM_BUILD=$(B) tests/netns .venv/bin/python -m pytest -q -s \
+		tests/system/modbus_person.py
+
 # The page in Firefox, which is not among what `tests/setup check` installs.
 panel-firefox: all panel
 	@test -x /usr/bin/firefox-esr || { echo "firefox-esr is not here:" \
@@ -986,7 +997,7 @@ clean:
 
 -include $(shell find $(B) -name '*.d' -type f 2>/dev/null)
 
-.PHONY: all hall panel pictures-panel panel-load panel-frames panel-firefox demo bench-plan check quick vm vm-parts check-vm units run-units run-crossings clang bench \
+.PHONY: all hall modbus-person panel pictures-panel panel-load panel-frames panel-firefox demo bench-plan check quick vm vm-parts check-vm units run-units run-crossings clang bench \
 	experiments experiments-pulse experiments-contour experiments-jump \
 	experiments-curve experiments-servo experiments-wire experiments-times invariants \
 	walkable wire-random \

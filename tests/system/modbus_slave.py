@@ -53,6 +53,7 @@ class Slave:
         self.mangle = None      # what becomes of the bytes of an answer
         self.writes = []        # (time, function, address, values)
         self.reads = 0
+        self.asks = []          # when each request came; None: another link
         self.ready = threading.Event()
         self.block = ModbusSequentialDataBlock(0, [0] * 100)
         self.pty = pty
@@ -60,9 +61,13 @@ class Slave:
 
     # -- What pymodbus asks
 
+    def _connect(self, there):
+        self.asks.append(None)
+
     def _pdu(self, sending, pdu):
         if not sending:
             self.asked = pdu
+            self.asks.append(time.monotonic_ns())
             if pdu.function_code in (6, 16):
                 values = list(pdu.registers)
                 self.writes.append((time.monotonic(), pdu.function_code,
@@ -113,7 +118,8 @@ class Slave:
         self.loop = asyncio.get_running_loop()
         context = ModbusServerContext(slaves=ModbusSlaveContext(
             hr=self.block, ir=self.block), single=True)
-        more = {"trace_pdu": self._pdu, "trace_packet": self._packet}
+        more = {"trace_pdu": self._pdu, "trace_packet": self._packet,
+                "trace_connect": self._connect}
         if self.pty:
             self.server = ModbusSerialServer(
                 context, framer=FramerType.RTU, port=self.far, baudrate=19200,
