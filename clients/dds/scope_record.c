@@ -16,8 +16,18 @@ struct record {
 	const char *machine;
 	dds_entity_t reader;
 	FILE *f;
-	uint64_t first, last, written, lost;	/* cycles */
+	uint64_t last, written, lost;	/* cycles */
+	double t_s;			/* of the last one */
 };
+
+/* Cycles from the last row on.  Those of an edmd that was started anew begin at
+ * 0 again. */
+static uint64_t cycles_since(const struct record *r, uint64_t cycle)
+{
+	if (r->written == 0)
+		return 0;
+	return cycle > r->last ? cycle - r->last : 1;
+}
 
 static void write_row(struct record *r, const edm_Scope *m,
 		      const edm_ScopeRow *row)
@@ -28,17 +38,15 @@ static void write_row(struct record *r, const edm_Scope *m,
 		.gap_v = (double)row->gap_v, .line = row->line,
 		.state = row->state,
 	};
+	const uint64_t since = cycles_since(r, row->cycle);
 
 	memcpy(t.pos, row->position, sizeof(t.pos));
 	memcpy(t.actual, row->actual, sizeof(t.actual));
-	if (r->written == 0)
-		r->first = row->cycle;
-	else if (row->cycle > r->last)
-		r->lost += row->cycle - r->last - 1;
+	r->lost += since > 1 ? since - 1 : 0;
+	r->t_s += (double)since * m->period_s;
 	r->last = row->cycle;
 	r->written++;
-	shm_csv_row(r->f, &t, (double)(row->cycle - r->first) * m->period_s,
-		      m->pulse_mm);
+	shm_csv_row(r->f, &t, r->t_s, m->pulse_mm);
 }
 
 /* What another machine's partition, or another name, tells is not of it. */

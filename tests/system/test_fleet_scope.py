@@ -153,6 +153,20 @@ def test_what_a_stranger_tells_in_another_partition_is_not_recorded(
     assert not any(float(x["s_mm"]) == 77 for x in r.rows())
 
 
+def test_an_edmd_that_is_started_anew_is_gone_on_with(shop, tmp_path):
+    """Its cycles begin at 0 again; the time of the CSV goes on."""
+    r = Recorder(shop, tmp_path / "scope.csv")
+    until(lambda: r.path.exists() and len(r.rows()) > 2000, 60)
+    n = len(r.rows())
+    shop.edmd.kill()
+    shop.edmd.wait()
+    shop.start_edmd()
+    until(lambda: len(r.rows()) > n + 2000, 60)
+    assert r.end()[0] == 0
+    t = [float(x["t_s"]) for x in r.rows()]
+    assert t == sorted(set(t)) and t[-1] < 1e4
+
+
 def test_a_machine_that_is_not_there_is_said(tmp_path):
     p = subprocess.Popen(
         [str(BUILD / "edm-fleet"), "scope", str(tmp_path / "x.csv"),
