@@ -40,35 +40,38 @@ static uint32_t fill_rows(struct scope *s, const struct watch *w)
 	return n;
 }
 
-static void write_rows(const struct scope *s, const struct watch *w, uint32_t n)
+static void write_rows(const struct scope *s, const struct watch *w,
+		       const struct shm_snapshot *about, uint32_t n)
 {
 	edm_Scope m = {
-		.period_s = (double)w->last.period_ns * 1e-9,
+		.period_s = (double)about->period_ns * 1e-9,
 		.rows = { ._length = n, ._maximum = n,
 			  ._buffer = (edm_ScopeRow *)(uintptr_t)s->row },
 	};
 
 	snprintf(m.machine, sizeof(m.machine), "%s", w->machine);
-	memcpy(m.pulse_mm, w->last.pulse_mm, sizeof(m.pulse_mm));
+	memcpy(m.pulse_mm, about->pulse_mm, sizeof(m.pulse_mm));
 	dds_write(s->writer, &m);
 }
 
 void scope_step(struct scope *s, const struct watch *w)
 {
 	const bool was = s->is_read;
-	uint32_t n = SCOPE_ROWS;
+	struct shm_snapshot about;
+	uint32_t n = SCOPE_ROWS, instance;
 
-	s->is_read = s->writer > 0 && w->status && w->heard && is_read(s);
-	if (!s->is_read)
+	s->is_read = s->writer > 0 && w->status && is_read(s);
+	if (!s->is_read || !shm_snapshot(w->status, &about))
 		return;
-	if (!was || s->instance != w->instance)
+	instance = w->status->head.instance;
+	if (!was || s->instance != instance)
 		s->trace.next = __atomic_load_n(&w->status->trace_next,
 						__ATOMIC_ACQUIRE);
-	s->instance = w->instance;
+	s->instance = instance;
 	for (int left = SHM_TRACE_SLOTS; n == SCOPE_ROWS && left > 0;
 	     left -= SCOPE_ROWS) {
 		n = fill_rows(s, w);
 		if (n > 0)
-			write_rows(s, w, n);
+			write_rows(s, w, &about, n);
 	}
 }

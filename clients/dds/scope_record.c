@@ -5,6 +5,7 @@
 #include "shm_csv.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sysexits.h>
@@ -49,6 +50,16 @@ static void write_row(struct record *r, const edm_Scope *m,
 	shm_csv_row(r->f, &t, r->t_s, m->pulse_mm);
 }
 
+/* Does it have numbers that a machine may have? */
+static bool is_sane(const edm_Scope *m)
+{
+	bool sane = m->period_s > 0 && m->period_s <= 1;
+
+	for (int i = 0; i < SHM_NAXES; i++)
+		sane = sane && isfinite(m->pulse_mm[i]);
+	return sane;
+}
+
 /* What another machine's partition, or another name, tells is not of it. */
 static int take(struct record *r)
 {
@@ -60,6 +71,7 @@ static int take(struct record *r)
 		const edm_Scope *m = at[i];
 
 		if (!info[i].valid_data || strcmp(m->machine, r->machine) ||
+		    !is_sane(m) ||
 		    !topic_is_of(r->reader, info[i].publication_handle,
 				 r->machine))
 			continue;
@@ -81,7 +93,8 @@ static int follow(struct record *r, int epoll)
 		do
 			n = take(r);
 		while (n == TAKEN);
-	} while (n >= 0 && !stop);
+		fflush(r->f);
+	} while (n >= 0 && !stop && !ferror(r->f));
 	return n < 0 ? n : 0;
 }
 

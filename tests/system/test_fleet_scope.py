@@ -167,6 +167,13 @@ def test_an_edmd_that_is_started_anew_is_gone_on_with(shop, tmp_path):
     assert t == sorted(set(t)) and t[-1] < 1e4
 
 
+def test_a_full_disk_ends_it(shop):
+    p = subprocess.run(
+        [str(BUILD / "edm-fleet"), "scope", "/dev/full", "--machine",
+         shop.name], capture_output=True, text=True, timeout=120)
+    assert p.returncode == 74 and "/dev/full" in p.stderr, p.stderr
+
+
 def test_a_machine_that_is_not_there_is_said(tmp_path):
     p = subprocess.Popen(
         [str(BUILD / "edm-fleet"), "scope", str(tmp_path / "x.csv"),
